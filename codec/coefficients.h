@@ -1,6 +1,7 @@
 #pragma once
 
 #include "exp_golomb.h"
+#include "mixer.h"
 #include "subbands.h"
 
 #include <cstring>
@@ -44,39 +45,115 @@ inline int signOf(std::int64_t value) { return (value > 0 ? 1 : 0) - (value < 0 
 constexpr unsigned kOwnClasses = 18;
 constexpr unsigned kOtherClasses = 8;
 constexpr unsigned kFamilyClasses = 8;
+constexpr unsigned kEachClasses = 8;
+constexpr unsigned kTotalClasses = 24;
+constexpr unsigned kPlaceClasses = 10;
+constexpr unsigned kLevels = 11; ///< of details, in the largest grid
+
+/// How many estimates are mixed for each bit of a magnitude, and how many bits are coded that way before
+/// the escape.
+constexpr unsigned kMixed = 5;
+constexpr unsigned kSteps = 3;
+constexpr unsigned kMixedSigns = 3;
 
 struct CoefficientModels
 {
     BitModel bandIsEmpty[kComponents];
-    BitModel notZero[2][kOwnClasses][kOtherClasses][kFamilyClasses];
-    BitModel aboveOne[kOwnClasses][kOtherClasses];
-    BitModel aboveTwo[kOwnClasses][kOtherClasses];
+    // Magnitudes; the last index counts the bits.
+    BitModel nearAndOthers[kOwnClasses][kOtherClasses][kComponents][kSteps];
+    BitModel nearAndFamily[kOwnClasses][kFamilyClasses][2][kSteps];
+    BitModel eachNear[kEachClasses][kEachClasses][kEachClasses][kSteps];
+    BitModel everything[kTotalClasses][kComponents][kSteps];
+    BitModel place[kLevels][3][kPlaceClasses][kSteps];
+    MixWeights<kMixed> weights[kTotalClasses][kSteps];
     ExpGolombModels<kDetailPrefixes> larger[kOwnClasses];
-    BitModel sign[3][3][9];
+    BitModel signAlong[3][3][3][3][3];
+    BitModel signAcross[3][7];
+    BitModel signFamily[3][3][3];
+    MixWeights<kMixedSigns> signWeights[3];
     ExpGolombModels<kCoarseBits> coarse;
+};
+
+/// Coefficients around one place of a band that are coded before it.
+struct Neighbourhood
+{
+    enum Direction : unsigned
+    {
+        West,
+        North,
+        NorthWest,
+        NorthEast,
+        Parent,  ///< in the coarser level's band of the same orientation
+        Sibling, ///< at the same place of this level's horizontal band
+        kCount,
+    };
+    std::int32_t value[kComponents][kCount];
+    std::uint64_t farther[kComponents];      ///< magnitudes two steps west and north
+    std::uint64_t secondSibling[kComponents]; ///< magnitude at the same place of the vertical band
+    std::int32_t here[kComponents];          ///< this place's components coded so far; 0 for the others
 };
 
 /// The models that one coefficient uses.
 struct CoefficientContext
 {
-    BitModel* notZero;
-    BitModel* aboveOne;
-    BitModel* aboveTwo;
+    BitModel* magnitude[kMixed]; ///< of the first bit; those of the next bits follow
+    MixWeights<kMixed>* weights; ///< likewise
     ExpGolombModels<kDetailPrefixes>* larger;
-    BitModel* sign;
-    bool expectNegative; ///< the sign is coded as differing from this
+    CoefficientModels* all; ///< with the rest, for the sign
+    const Neighbourhood* near;
+    unsigned component;
+    unsigned orientation;
 };
+
+/// Codes whether a coefficient that is not zero is negative.
+template <class Coder> bool codeSign(Coder& coder, const CoefficientContext& context, bool negative)
+{
+    const unsigned component = context.component;
+    const Neighbourhood& near = *context.near;
+    const std::int32_t* own = near.value[component];
+    // Where neighbours of this component and one coded before varied alike, so will they here.
+    std::int64_t expected = 0;
+    for (unsigned c = 0; c < component; ++c) {
+        if (near.here[c] == 0) continue;
+        std::int64_t alike = 0;
+        for (unsigned k = 0; k < Neighbourhood::kCount; ++k) {
+            const std::int32_t other = near.value[c][k];
+            alike += signOf(other) * signOf(own[k]) *
+                     static_cast<std::int64_t>(activityClass(magnitudeOf(other), 63) *
+                                               activityClass(magnitudeOf(own[k]), 63));
+        }
+        expected += signOf(near.here[c]) * alike;
+    }
+    const std::int64_t clarity = expected < 0 ? -expected : expected;
+    const unsigned across = expected == 0 ? 0u : (expected < 0 ? 1u : 4u) + (clarity < 4 ? 0u : clarity < 16 ? 1u : 2u);
+
+    const auto side = [own](Neighbourhood::Direction k) { return static_cast<unsigned>(signOf(own[k]) + 1); };
+    CoefficientModels& models = *context.all;
+    const unsigned o = context.orientation;
+    BitModel* const mixed[kMixedSigns] = {
+        &models.signAlong[o][side(Neighbourhood::West)][side(Neighbourhood::North)][side(Neighbourhood::NorthWest)]
+                         [side(Neighbourhood::NorthEast)],
+        &models.signAcross[component][across],
+        &models.signFamily[o][side(Neighbourhood::Parent)][side(Neighbourhood::Sibling)],
+    };
+    return codeMixed(coder, mixed, models.signWeights[o], negative);
+}
 
 template <class Coder> std::int32_t codeDetail(Coder& coder, const CoefficientContext& context, std::int32_t value)
 {
     std::uint64_t magnitude = magnitudeOf(value);
-    if (!coder.bit(*context.notZero, magnitude > 0)) return 0;
-    if (!coder.bit(*context.aboveOne, magnitude > 1)) magnitude = 1;
-    else if (!coder.bit(*context.aboveTwo, magnitude > 2)) magnitude = 2;
-    else magnitude = 3 + codeExpGolomb(coder, *context.larger, magnitude - 3);
+    unsigned step = 0;
+    for (; step < kSteps; ++step) {
+        BitModel* models[kMixed];
+        for (unsigned k = 0; k < kMixed; ++k) models[k] = context.magnitude[k] + step;
+        if (!codeMixed(coder, models, context.weights[step], magnitude > step)) break;
+    }
+    if (step == 0) return 0;
+    if (step < kSteps) magnitude = step;
+    else magnitude = kSteps + codeExpGolomb(coder, *context.larger, magnitude - kSteps);
     // The escape's largest value would leave the range of a detail by a hair.
     if (magnitude > static_cast<std::uint64_t>(kMaxDetail)) return coder.fail(), 0;
-    const bool negative = coder.bit(*context.sign, (value < 0) != context.expectNegative) != context.expectNegative;
+    const bool negative = codeSign(coder, context, value < 0);
     return negative ? -static_cast<std::int32_t>(magnitude) : static_cast<std::int32_t>(magnitude);
 }
 
@@ -108,13 +185,6 @@ public:
 private:
     std::size_t pitch_ = 0;
     std::int32_t* row_[3] = {};
-};
-
-/// What a context is made from at one place of a band: signed neighbours in coding order.
-struct Neighbourhood
-{
-    static constexpr unsigned kCount = 6; ///< W, N, NW, NE, parent, sibling
-    std::int32_t value[kComponents][kCount];
 };
 
 /// Codes all coefficients of an image, coarse to fine.
@@ -162,43 +232,44 @@ template <class Coder> void codeCoarse(Coder& coder, CoefficientModels& models, 
 }
 
 inline CoefficientContext contextOf(CoefficientModels& models, const Neighbourhood& near, unsigned component,
-                                    unsigned orientation, const std::int32_t (&here)[kComponents],
-                                    std::uint64_t farther, std::uint64_t otherSiblings)
+                                    unsigned orientation, unsigned level)
 {
-    const std::int32_t* own = near.value[component];
-    const std::uint64_t ownSum = 2 * (magnitudeOf(own[0]) + magnitudeOf(own[1])) + magnitudeOf(own[2]) +
-                                 magnitudeOf(own[3]) + farther;
-    const std::uint64_t family = magnitudeOf(own[4]) + 2 * magnitudeOf(own[5]) + otherSiblings;
+    std::uint64_t own[Neighbourhood::kCount];
+    for (unsigned k = 0; k < Neighbourhood::kCount; ++k) own[k] = magnitudeOf(near.value[component][k]);
+    const std::uint64_t west = own[Neighbourhood::West], north = own[Neighbourhood::North];
+    const std::uint64_t diagonals = own[Neighbourhood::NorthWest] + own[Neighbourhood::NorthEast];
+    const std::uint64_t around = 2 * (west + north) + diagonals + near.farther[component];
+    const std::uint64_t family =
+        own[Neighbourhood::Parent] + 2 * (own[Neighbourhood::Sibling] + near.secondSibling[component]);
     // Components already coded at this place say more than the neighbours of those that are not.
     std::uint64_t others = 0;
     for (unsigned c = 0; c < kComponents; ++c) {
-        if (c < component) others += 2 * magnitudeOf(here[c]);
-        else if (c > component) others += (magnitudeOf(near.value[c][0]) + magnitudeOf(near.value[c][1]) + 1) / 2;
+        if (c < component) others += 2 * magnitudeOf(near.here[c]);
+        else if (c > component)
+            others += (magnitudeOf(near.value[c][Neighbourhood::West]) +
+                       magnitudeOf(near.value[c][Neighbourhood::North]) + 1) / 2;
     }
 
-    // Where neighbours of this and a coded component varied alike, so will they here.
-    std::int64_t expected = 0;
-    for (unsigned c = 0; c < component; ++c) {
-        if (here[c] == 0) continue;
-        std::int64_t product = 0;
-        for (unsigned k = 0; k < Neighbourhood::kCount; ++k)
-            product += signOf(near.value[c][k]) * signOf(own[k]) *
-                       static_cast<std::int64_t>(activityClass(magnitudeOf(near.value[c][k]), 63) *
-                                                 activityClass(magnitudeOf(own[k]), 63));
-        expected += signOf(here[c]) * product;
-    }
-    const unsigned west = static_cast<unsigned>(signOf(own[0]) + 1);
-    const unsigned north = static_cast<unsigned>(signOf(own[1]) + 1);
-
-    const unsigned a = activityClass(ownSum, kOwnClasses - 1);
+    const unsigned a = activityClass(around, kOwnClasses - 1);
     const unsigned b = activityClass(others, kOtherClasses - 1);
     const unsigned f = activityClass(family, kFamilyClasses - 1);
-    return {&models.notZero[orientation == Diagonal][a][b][f],
-            &models.aboveOne[a][b],
-            &models.aboveTwo[a][b],
-            &models.larger[a],
-            &models.sign[orientation][expected == 0 ? 0 : (expected > 0 ? 1 : 1)][3 * west + north],
-            expected < 0};
+    const unsigned w = activityClass(west, kEachClasses - 1);
+    const unsigned n = activityClass(north, kEachClasses - 1);
+    const unsigned d = activityClass(diagonals, kEachClasses - 1);
+    const unsigned all = activityClass(2 * around + 3 * others + 2 * family, kTotalClasses - 1);
+    CoefficientContext context;
+    context.magnitude[0] = models.nearAndOthers[a][b][component];
+    context.magnitude[1] = models.nearAndFamily[a][f][orientation == Diagonal];
+    context.magnitude[2] = models.eachNear[w][n][d];
+    context.magnitude[3] = models.everything[all][component];
+    context.magnitude[4] = models.place[level][orientation][a < kPlaceClasses ? a : kPlaceClasses - 1];
+    context.weights = models.weights[all];
+    context.larger = &models.larger[a];
+    context.all = &models;
+    context.near = &near;
+    context.component = component;
+    context.orientation = orientation;
+    return context;
 }
 
 } // namespace detail
@@ -209,7 +280,8 @@ void codeImage(Coder& coder, CoefficientModels& models, QuantizedImage& image, P
 {
     detail::codeCoarse(coder, models, image);
     const std::size_t pitch = image.grid;
-    for (std::uint32_t m = kCoarsest; 2 * m - 1 <= image.grid && !coder.failed(); m = 2 * m - 1) {
+    unsigned level = 0;
+    for (std::uint32_t m = kCoarsest; 2 * m - 1 <= image.grid && !coder.failed(); m = 2 * m - 1, ++level) {
         for (unsigned orientation = 0; orientation < 3; ++orientation) {
             const Subband band = subband(m, orientation);
             const bool hasParent = m > kCoarsest;
@@ -229,36 +301,38 @@ void codeImage(Coder& coder, CoefficientModels& models, QuantizedImage& image, P
                 for (unsigned c = 0; c < kComponents; ++c) rows[c].nextRow();
                 for (std::uint32_t i = 0; i < band.width; ++i) {
                     Neighbourhood near;
-                    std::uint64_t farther[kComponents], otherSiblings[kComponents];
                     for (unsigned c = 0; c < kComponents; ++c) {
                         const std::int32_t* r0 = rows[c].row(0) + i;
                         const std::int32_t* r1 = rows[c].row(1) + i;
-                        std::int32_t* v = near.value[c];
-                        v[0] = r0[-1];
-                        v[1] = r1[0];
-                        v[2] = r1[-1];
-                        v[3] = r1[1];
-                        farther[c] = magnitudeOf(r0[-2]) + magnitudeOf(rows[c].row(2)[i]);
                         const std::int32_t* plane = image.detail[c];
-                        v[4] = hasParent ? plane[(parent.j0 + j / 2) * pitch + parent.i0 + i / 2] : 0;
-                        v[5] = 0;
-                        otherSiblings[c] = 0;
-                        if (orientation != Horizontal) {
-                            const std::uint32_t hi = i < horizontal.width ? i : i - 1;
-                            v[5] = plane[(horizontal.j0 + j) * pitch + horizontal.i0 + hi];
-                        }
-                        if (orientation == Diagonal)
-                            otherSiblings[c] = 2 * magnitudeOf(plane[(vertical.j0 + j) * pitch + vertical.i0 + i]);
+                        std::int32_t* v = near.value[c];
+                        v[Neighbourhood::West] = r0[-1];
+                        v[Neighbourhood::North] = r1[0];
+                        v[Neighbourhood::NorthWest] = r1[-1];
+                        v[Neighbourhood::NorthEast] = r1[1];
+                        v[Neighbourhood::Parent] =
+                            hasParent ? plane[(parent.j0 + j / 2) * pitch + parent.i0 + i / 2] : 0;
+                        // The horizontal band is a column narrower than the vertical one.
+                        const std::uint32_t beside = i < horizontal.width ? i : i - 1;
+                        v[Neighbourhood::Sibling] =
+                            orientation == Horizontal
+                                ? 0
+                                : plane[(horizontal.j0 + j) * pitch + horizontal.i0 + beside];
+                        near.farther[c] = magnitudeOf(r0[-2]) + magnitudeOf(rows[c].row(2)[i]);
+                        near.secondSibling[c] =
+                            orientation == Diagonal
+                                ? magnitudeOf(plane[(vertical.j0 + j) * pitch + vertical.i0 + i])
+                                : 0;
+                        near.here[c] = 0;
                     }
-                    std::int32_t here[kComponents] = {};
                     for (unsigned c = 0; c < kComponents; ++c) {
                         if (empty[c]) continue;
-                        const CoefficientContext context = detail::contextOf(models, near, c, orientation, here,
-                                                                             farther[c], otherSiblings[c]);
+                        const CoefficientContext context = detail::contextOf(models, near, c, orientation, level);
                         const std::size_t index = (band.j0 + j) * pitch + band.i0 + i;
-                        here[c] = pick(coder, context, c, index);
-                        image.detail[c][index] = here[c];
-                        rows[c].row(0)[i] = here[c];
+                        const std::int32_t value = pick(coder, context, c, index);
+                        near.here[c] = value;
+                        image.detail[c][index] = value;
+                        rows[c].row(0)[i] = value;
                     }
                 }
             }

@@ -5,6 +5,7 @@
 
 #include <cmath>
 #include <cstring>
+#include <new>
 #include <zlib.h>
 
 namespace gimg::codec {
@@ -62,8 +63,7 @@ ReadStatus decodeWavelet(const ImageHeader& header, const std::uint32_t* classes
         return ReadStatus::Misuse;
 
     RangeDecoder decoder(header.samples);
-    const CoefficientModels fresh;
-    std::memcpy(static_cast<void*>(models), &fresh, sizeof fresh);
+    new (models) CoefficientModels();
     const PlainPick pick;
     const NothingKnown nothing;
     codeImage(decoder, *models, image, pick, nothing, rows);

@@ -13,7 +13,7 @@ namespace {
 
 /// What one bit is allowed to mend, in squared steps. At high rates a bit halves the error, and
 /// d(step^2 / 12 * 4^-b) / db = -0.1155 step^2.
-constexpr double kWorthOfBit = 0.115;
+constexpr double kWorthOfBit = 0.09;
 /// A band none of whose magnitudes reaches this many steps is not worth coding.
 constexpr double kEmptyBelow = 0.6;
 
@@ -22,10 +22,12 @@ class BitCounter
 {
 public:
     static constexpr bool kDecodes = false;
+    static constexpr bool kAdapts = false;
 
-    bool bit(BitModel& model, bool one)
+    bool bit(BitModel& model, bool one) { return code(model.zero(), one); }
+
+    bool code(std::uint32_t zero, bool one)
     {
-        const std::uint32_t zero = model.zero();
         bits_ += costTable()[(one ? (1u << kProbabilityBits) - zero : zero) >> kTableShift];
         return one;
     }

@@ -11,6 +11,7 @@ class RangeDecoder
 {
 public:
     static constexpr bool kDecodes = true;
+    static constexpr bool kAdapts = true;
     /// The encoder leaves out up to this many zero bytes at the end.
     static constexpr std::size_t kMaxOverrun = 4;
 
@@ -19,9 +20,10 @@ public:
         for (int k = 0; k < 4; ++k) code_ = code_ << 8 | nextByte();
     }
 
-    bool bit(BitModel& model, bool = false)
+    /// A bit that is 0 with a probability of zero / 2^15, which is neither 0 nor 1.
+    bool code(std::uint32_t zero, bool = false)
     {
-        const std::uint32_t bound = (range_ >> kProbabilityBits) * model.zero();
+        const std::uint32_t bound = (range_ >> kProbabilityBits) * zero;
         const bool one = code_ >= bound;
         if (one) {
             code_ -= bound;
@@ -29,8 +31,14 @@ public:
         } else {
             range_ = bound;
         }
-        model.update(one);
         normalise();
+        return one;
+    }
+
+    bool bit(BitModel& model, bool = false)
+    {
+        const bool one = code(model.zero());
+        model.update(one);
         return one;
     }
 

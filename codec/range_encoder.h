@@ -11,18 +11,25 @@ class RangeEncoder
 {
 public:
     static constexpr bool kDecodes = false;
+    static constexpr bool kAdapts = true;
 
-    bool bit(BitModel& model, bool one)
+    bool code(std::uint32_t zero, bool one)
     {
-        const std::uint32_t bound = (range_ >> kProbabilityBits) * model.zero();
+        const std::uint32_t bound = (range_ >> kProbabilityBits) * zero;
         if (one) {
             low_ += bound;
             range_ -= bound;
         } else {
             range_ = bound;
         }
-        model.update(one);
         normalise();
+        return one;
+    }
+
+    bool bit(BitModel& model, bool one)
+    {
+        code(model.zero(), one);
+        model.update(one);
         return one;
     }
 
