@@ -5,7 +5,7 @@
 #include "gimg/mesh.h"
 #include "gimg/result.h"
 
-#include <seam.h>
+#include "seam.h"
 
 #include <cstdint>
 #include <vector>
