@@ -1,11 +1,11 @@
-// gimshape NAME OUT.obj: writes one of the analytic surfaces of shapes.h.
+// gimshape NAME OUT: writes one of the analytic surfaces of shapes.h.
+#include "gimg/mesh_io.h"
 #include "shapes.h"
 
 #include <CLI/CLI.hpp>
-#include <fstream>
 #include <functional>
-#include <iomanip>
 #include <iostream>
+#include <map>
 
 namespace {
 
@@ -32,23 +32,15 @@ const std::map<std::string, Maker> kShapes = {
     {"genus", [](const Options& o) { return shapes::surfaceOfGenus(o.genus, o.loops, o.resolution); }},
 };
 
-void writeObj(std::ostream& out, const Mesh& mesh)
-{
-    out << std::setprecision(9);
-    for (const gimg::Vec3& p : mesh.positions) out << "v " << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';
-    for (const gimg::Triangle& f : mesh.faces)
-        out << "f " << f[0] + 1 << ' ' << f[1] + 1 << ' ' << f[2] + 1 << '\n';
-}
-
 } // namespace
 
 int main(int argc, char** argv)
 {
     std::string name, path;
     Options options;
-    CLI::App app{"Writes a surface of known topology, area and volume as an OBJ file."};
+    CLI::App app{"Writes a surface of known topology, area and volume."};
     app.add_option("NAME", name, "Which surface")->required()->check(CLI::IsMember(kShapes));
-    app.add_option("OUT.obj", path, "The file to write")->required();
+    app.add_option("OUT", path, "The file to write: .ply, .obj, .off or .stl")->required();
     app.add_option("--resolution", options.resolution, "Segments along the surface's shortest feature")
         ->check(CLI::Range(3, 1000))
         ->capture_default_str();
@@ -66,10 +58,8 @@ int main(int argc, char** argv)
     }
 
     const Mesh mesh = kShapes.at(name)(options);
-    std::ofstream out(path);
-    writeObj(out, mesh);
-    if (!out.flush()) {
-        std::cerr << "gimshape: cannot write " << path << '\n';
+    if (const gimg::Status written = gimg::writeMesh(mesh, path); !written) {
+        std::cerr << "gimshape: " << written.error().message << '\n';
         return 1;
     }
     const gimg::Topology t = gimg::topology(mesh);
