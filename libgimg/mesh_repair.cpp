@@ -145,9 +145,8 @@ void findOrientation(const std::vector<Triangle>& faces, const std::vector<EdgeU
     }
 }
 
-Defects findDefects(const std::vector<Triangle>& faces, int vertexCount)
+Defects findDefects(const std::vector<Triangle>& faces, const std::vector<EdgeUse>& uses, int vertexCount)
 {
-    const std::vector<EdgeUse> uses = sortedEdgeUses(faces);
     Defects defects;
     int firstUse = 0;
     forEachEdge(uses, [&](const EdgeUse* first, const EdgeUse* last) {
@@ -241,8 +240,8 @@ std::string harmOfWelding(const Triangles& before, const Triangles& after, int v
     if (const int64_t n = after.repeatedVertex - before.repeatedVertex; n > 0)
         return plural(n, "face", "faces") + " with a repeated vertex";
     if (const int64_t n = after.duplicate - before.duplicate; n > 0) return plural(n, "duplicate face", "duplicate faces");
-    const Defects was = findDefects(before.faces, vertexCount);
-    const Defects is = findDefects(after.faces, vertexCount);
+    const Defects was = findDefects(before.faces, sortedEdgeUses(before.faces), vertexCount);
+    const Defects is = findDefects(after.faces, sortedEdgeUses(after.faces), vertexCount);
     if (const int64_t n = is.nonManifoldEdges - was.nonManifoldEdges; n > 0)
         return plural(n, "non-manifold edge", "non-manifold edges");
     if (const int64_t n = is.nonManifoldVertices - was.nonManifoldVertices; n > 0)
@@ -266,18 +265,18 @@ Triangles welded(const PolygonSoup& soup, const std::vector<Triangle>& triangles
     return joined;
 }
 
-/// Faces of every component (connected by shared vertices), the largest first, else in file order.
-std::vector<std::vector<int>> components(const std::vector<Triangle>& faces, int vertexCount)
+/// Faces of every component, the largest first, else in file order. Connected means across edges: parts that merely
+/// touch in a vertex are no surface together.
+std::vector<std::vector<int>> components(const std::vector<Triangle>& faces, const std::vector<EdgeUse>& uses)
 {
-    DisjointSets sets(static_cast<size_t>(vertexCount));
-    for (const Triangle& t : faces) {
-        sets.unite(t[0], t[1]);
-        sets.unite(t[0], t[2]);
-    }
-    std::vector<int> indexOf(static_cast<size_t>(vertexCount), -1);
+    DisjointSets sets(faces.size());
+    forEachEdge(uses, [&sets](const EdgeUse* first, const EdgeUse* last) {
+        for (const EdgeUse* use = first + 1; use < last; ++use) sets.unite(first->h / 3, use->h / 3);
+    });
+    std::vector<int> indexOf(faces.size(), -1);
     std::vector<std::vector<int>> result;
     for (int f = 0; f < static_cast<int>(faces.size()); ++f) {
-        int& index = indexOf[sets.find(faces[f][0])];
+        int& index = indexOf[sets.find(f)];
         if (index < 0) {
             index = static_cast<int>(result.size());
             result.emplace_back();
@@ -307,7 +306,6 @@ std::string more(int64_t count, const std::string& one, const std::string& many)
     return count > 1 ? ", and " + std::to_string(count - 1) + " more such " + (count == 2 ? one : many) : "";
 }
 
-/// Six digits of every coordinate tell apart what a number alone may not (STL has no vertex numbers).
 std::string place(const PolygonSoup& soup, int v)
 {
     std::ostringstream text;
@@ -318,7 +316,8 @@ std::string place(const PolygonSoup& soup, int v)
 
 std::string edgeName(const PolygonSoup& soup, int a, int b)
 {
-    return std::to_string(a + soup.firstNumber) + "-" + std::to_string(b + soup.firstNumber);
+    const std::string numbers = std::to_string(a + soup.firstNumber) + "-" + std::to_string(b + soup.firstNumber);
+    return soup.indexed ? numbers : numbers + place(soup, a) + " to" + place(soup, b).substr(3); // STL shows no numbers
 }
 
 Status refusal(const PolygonSoup& soup, const std::vector<Triangle>& faces, const Defects& defects)
@@ -427,7 +426,8 @@ Result<MeshFile> repaired(const PolygonSoup& soup, const ReadOptions& options)
     std::vector<Triangle> faces = std::move(kept.faces);
     if (faces.empty()) return Error{ErrorKind::EmptyMesh, "no face has three different vertices"};
 
-    const std::vector<std::vector<int>> parts = components(faces, vertexCount);
+    std::vector<EdgeUse> uses = sortedEdgeUses(faces);
+    const std::vector<std::vector<int>> parts = components(faces, uses);
     report.components = static_cast<int64_t>(parts.size());
     if (parts.size() > 1) {
         if (!options.largestComponent) return severalComponents(parts, report);
@@ -435,9 +435,10 @@ Result<MeshFile> repaired(const PolygonSoup& soup, const ReadOptions& options)
         for (int f : parts.front()) chosen.push_back(faces[f]);
         report.droppedFaces = static_cast<int64_t>(faces.size() - chosen.size());
         faces = std::move(chosen);
+        uses = sortedEdgeUses(faces);
     }
 
-    Defects defects = findDefects(faces, vertexCount);
+    Defects defects = findDefects(faces, uses, vertexCount);
     if (const Status status = refusal(soup, faces, defects); !status) return status.error();
     report.flippedFaces = orient(soup, faces, std::move(defects.flip), defects.closed);
     for (const Triangle& t : faces) {

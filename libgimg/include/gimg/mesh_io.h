@@ -21,8 +21,9 @@ enum class Weld
 struct ReadOptions
 {
     Weld weld = Weld::Auto;
-    /// Of several connected components take the one with the most faces (the first of equals). Defects of the
-    /// others then do not matter. False: several components are refused.
+    /// Of several components take the one with the most triangles (the first of equals); defects of the others then
+    /// do not matter. A component is connected across edges: parts that touch in a vertex only are two. False:
+    /// several components are refused.
     bool largestComponent = false;
 };
 
@@ -41,8 +42,8 @@ struct RepairReport
     std::string weldRefusal;          ///< why Weld::Auto left repeatedPositions alone; empty if it did not
     int64_t unreferencedVertices = 0; ///< dropped: in no face
     int64_t flippedFaces = 0;         ///< reversed to make the orientation consistent
-    int64_t components = 0;           ///< connected components before any was dropped
-    int64_t droppedFaces = 0;         ///< faces of the components that were not chosen
+    int64_t components = 0;           ///< connected across edges, before any was dropped
+    int64_t droppedFaces = 0;         ///< triangles of the components that were not chosen
     int64_t trailingBytes = 0;        ///< bytes after the end of the data, ignored
     bool lastLineOpen = false;        ///< a text file without a final line end: its last number may be cut short
 };
