@@ -17,7 +17,7 @@ Halfedges::Halfedges(const std::vector<Triangle>& faces, int vertexCount)
     for (size_t f = 0; f < faces.size(); ++f)
         for (int k = 0; k < 3; ++k) tail_[3 * f + k] = faces[f][k];
     for (int h = 0; h < count(); ++h) {
-        const auto [low, high] = std::minmax(tail(h), head(h));
+        const int low = std::min(tail(h), head(h)), high = std::max(tail(h), head(h));
         keys[h] = {static_cast<uint64_t>(low) << 32 | static_cast<uint32_t>(high), h};
     }
     std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {

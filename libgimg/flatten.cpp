@@ -1,0 +1,179 @@
+#include "gimg/flatten.h"
+
+#include "gimg/mean_value.h"
+#include "gimg/stretch.h"
+#include "hierarchy.h"
+#include "stretch_element.h"
+
+#include <Eigen/Dense>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gimg {
+namespace {
+
+constexpr int kGrowth = 4; // of the vertex count from level to level
+
+double cross(const Vec2& a, const Vec2& b) { return a.x() * b.y() - a.y() * b.x(); }
+
+// The kernel of a polygon whose edges are the outer edges of a star: all points that see every edge from its
+// left. Clips `polygon` by each edge's line.
+std::vector<Vec2> kernel(const std::vector<std::pair<Vec2, Vec2>>& edges, std::vector<Vec2> polygon)
+{
+    for (const auto& [from, to] : edges) {
+        std::vector<Vec2> kept;
+        for (size_t i = 0; i < polygon.size(); ++i) {
+            const Vec2& p = polygon[i];
+            const Vec2& q = polygon[(i + 1) % polygon.size()];
+            const double dp = cross(to - from, p - from), dq = cross(to - from, q - from);
+            if (dp >= 0) kept.push_back(p);
+            if ((dp > 0 && dq < 0) || (dp < 0 && dq > 0)) kept.push_back(p + dp / (dp - dq) * (q - p));
+        }
+        polygon = std::move(kept);
+    }
+    return polygon;
+}
+
+// One vertex among its neighbours: where it may lie, and what stretch it causes there.
+class Star
+{
+public:
+    Star(const Mesh& disk, const std::vector<Triangle>& triangles, const std::vector<Vec2>& st)
+    {
+        for (const Triangle& t : triangles) {
+            elements_.emplace_back(disk.positions[t[0]], disk.positions[t[1]], disk.positions[t[2]]);
+            edges_.push_back({st[t[1]], st[t[2]]});
+        }
+    }
+
+    double energy(const Vec2& p) const
+    {
+        double sum = 0;
+        for (size_t i = 0; i < edges_.size(); ++i)
+            sum += elements_[i].energy({p, edges_[i].first, edges_[i].second});
+        return sum;
+    }
+
+    // A strictly inner point of the kernel, or false if rounding leaves none.
+    bool place(Vec2& p) const
+    {
+        std::vector<Vec2> ring = {edges_[0].first};
+        for (size_t i = 1; i < edges_.size(); ++i)
+            for (const auto& edge : edges_)
+                if (edge.first == ring.back()) {
+                    ring.push_back(edge.second);
+                    break;
+                }
+        const std::vector<Vec2> region = kernel(edges_, ring);
+        if (region.empty()) return false;
+        p = Vec2::Zero();
+        for (const Vec2& corner : region) p += corner;
+        p /= static_cast<double>(region.size());
+        return std::isfinite(energy(p));
+    }
+
+    void descend(Vec2& p) const
+    {
+        double now = energy(p);
+        for (int iteration = 0; iteration < 6; ++iteration) {
+            Vec2 gradient = Vec2::Zero();
+            Eigen::Matrix2d hessian = Eigen::Matrix2d::Zero();
+            for (size_t i = 0; i < edges_.size(); ++i) {
+                const auto d = elements_[i].derivatives({p, edges_[i].first, edges_[i].second});
+                gradient += Vec2(d.gradient[0], d.gradient[3]);
+                hessian(0, 0) += d.hessian(0, 0);
+                hessian(0, 1) += d.hessian(0, 3);
+                hessian(1, 0) += d.hessian(3, 0);
+                hessian(1, 1) += d.hessian(3, 3);
+            }
+            const Vec2 step = -hessian.inverse() * gradient;
+            if (!step.allFinite()) return;
+            double t = 1, lowered = now;
+            for (; t > 1e-3; t *= 0.5) {
+                lowered = energy(p + t * step);
+                if (lowered < now) break;
+            }
+            if (!(lowered < now)) return;
+            p += t * step;
+            const bool settled = lowered > now * (1 - 1e-3);
+            now = lowered;
+            if (settled) return;
+        }
+    }
+
+private:
+    std::vector<StretchElement> elements_;
+    std::vector<std::pair<Vec2, Vec2>> edges_; // outer edge of each triangle
+};
+
+// Lowers the stretch of the hierarchy's current mesh; positions stay indexed by the disk's vertices.
+void relaxLevel(const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides, std::vector<Vec2>& st,
+                const DescentOptions& options)
+{
+    std::vector<int> vertexOf;
+    const Mesh level = hierarchy.current(vertexOf);
+    std::vector<bool> fixed(vertexOf.size());
+    std::vector<Vec2> position(vertexOf.size());
+    for (size_t i = 0; i < vertexOf.size(); ++i) {
+        fixed[i] = squareSides[vertexOf[i]] != 0;
+        position[i] = st[vertexOf[i]];
+    }
+    minimizeStretch(level, fixed, position, options);
+    for (size_t i = 0; i < vertexOf.size(); ++i) st[vertexOf[i]] = position[i];
+}
+
+// The coarsest level is a wheel: any convex combination of the border embeds it.
+Status startCoarsest(const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides, std::vector<Vec2>& st)
+{
+    std::vector<int> vertexOf;
+    const Mesh level = hierarchy.current(vertexOf);
+    std::vector<bool> fixed(vertexOf.size());
+    std::vector<Vec2> position(vertexOf.size());
+    for (size_t i = 0; i < vertexOf.size(); ++i) {
+        fixed[i] = squareSides[vertexOf[i]] != 0;
+        position[i] = st[vertexOf[i]];
+    }
+    if (const Status mapped = meanValueMap(level, fixed, {}, position); !mapped) return mapped;
+    if (const int flipped = flippedTriangles(level.faces, position); flipped > 0)
+        return Error{ErrorKind::FlippedTriangle, std::to_string(flipped) + " of " +
+                                                     std::to_string(level.faces.size()) +
+                                                     " triangles of the coarsest level are flipped"};
+    for (size_t i = 0; i < vertexOf.size(); ++i) st[vertexOf[i]] = position[i];
+    return Done{};
+}
+
+} // namespace
+
+Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progress& progress)
+{
+    const Mesh& disk = square.disk.mesh;
+    Parameterization result;
+    result.st = square.borderPosition;
+    Hierarchy hierarchy(disk, square.squareSides);
+    const int interior = hierarchy.interiorCount();
+    hierarchy.coarsen();
+    if (progress) progress(0.1);
+    if (const Status started = startCoarsest(hierarchy, square.squareSides, result.st); !started)
+        return started.error();
+    relaxLevel(hierarchy, square.squareSides, result.st, {50, 1e-4});
+    while (!hierarchy.isFull()) {
+        const int target = hierarchy.interiorCount() * kGrowth;
+        while (!hierarchy.isFull() && hierarchy.interiorCount() < target) {
+            const int v = hierarchy.refine();
+            const Star star(disk, hierarchy.star(v), result.st);
+            if (!star.place(result.st[v]))
+                return Error{ErrorKind::FlippedTriangle,
+                             "no room left in the plane for surface vertex " + std::to_string(square.disk.origin[v])};
+            star.descend(result.st[v]);
+        }
+        relaxLevel(hierarchy, square.squareSides, result.st, {hierarchy.isFull() ? 12 : 30, 1e-3});
+        if (progress) progress(0.1 + 0.9 * hierarchy.interiorCount() / std::max(1, interior));
+    }
+    if (const int flipped = flippedTriangles(disk.faces, result.st); flipped > 0)
+        return Error{ErrorKind::FlippedTriangle, std::to_string(flipped) + " flipped triangles"};
+    result.efficiency = stretchEfficiency(disk, result.st);
+    return result;
+}
+
+} // namespace gimg

@@ -1,0 +1,33 @@
+#pragma once
+
+#include "gimg/mesh.h"
+
+#include <vector>
+
+namespace gimg {
+
+/// L2 geometric stretch of a parameterization: the sum over faces of A(T) L2(T)^2, with A(T) the area on the
+/// surface, L2(T)^2 = (|Ss|^2 + |St|^2) / 2 and S the map from the parameter square to the surface.
+/// Infinite if a triangle is flipped or degenerate in the plane.
+/// @param st  one position in the unit square per vertex
+/// Source: Sander et al. 2001.
+double stretchEnergy(const Mesh& mesh, const std::vector<Vec2>& st);
+
+/// A^2 / stretchEnergy with A the surface area: 1 for an isometry, less the more unevenly samples spread.
+double stretchEfficiency(const Mesh& mesh, const std::vector<Vec2>& st);
+
+/// Number of triangles whose signed area in the plane is not positive.
+int flippedTriangles(const std::vector<Triangle>& faces, const std::vector<Vec2>& st);
+
+struct DescentOptions
+{
+    int maxIterations = 50;
+    double tolerance = 1e-4; ///< stop when an iteration lowers the energy by less than this fraction
+};
+
+/// Lowers the stretch energy by Newton steps with a convexified Hessian; a line search keeps every triangle
+/// positively oriented. `st` must start without flipped triangles. Returns the final energy.
+double minimizeStretch(const Mesh& mesh, const std::vector<bool>& fixed, std::vector<Vec2>& st,
+                       const DescentOptions& options);
+
+} // namespace gimg

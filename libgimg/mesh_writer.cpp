@@ -1,0 +1,202 @@
+#include "gimg/mesh_io.h"
+#include "polygon_soup.h"
+
+#include <algorithm>
+#include <bit>
+#include <charconv>
+#include <cmath>
+#include <exception>
+#include <fstream>
+
+namespace gimg {
+
+namespace {
+
+/// Collects a file's bytes.
+class Output
+{
+public:
+    explicit Output(bool bigEndian = false) : bigEndian_(bigEndian) {}
+
+    Output& operator<<(std::string_view text)
+    {
+        bytes_ += text;
+        return *this;
+    }
+    /// The shortest decimal that reads back as the same value.
+    template <class Number>
+    Output& operator<<(Number value)
+        requires(std::is_arithmetic_v<Number>)
+    {
+        char digits[32];
+        const auto [end, failure] = std::to_chars(digits, digits + sizeof digits, value);
+        bytes_.append(digits, end);
+        return *this;
+    }
+    Output& operator<<(const Vec3& p) { return *this << p[0] << " " << p[1] << " " << p[2]; }
+
+    void binary(uint64_t bits, int size)
+    {
+        for (int k = 0; k < size; ++k)
+            bytes_ += static_cast<char>(bits >> 8 * (bigEndian_ ? size - 1 - k : k) & 0xff);
+    }
+    void binary(float value) { binary(std::bit_cast<uint32_t>(value), 4); }
+    void binary(double value) { binary(std::bit_cast<uint64_t>(value), 8); }
+
+    const std::string& bytes() const { return bytes_; }
+
+private:
+    std::string bytes_;
+    bool bigEndian_;
+};
+
+void writeObj(const Mesh& mesh, std::span<const Vec3> normals, Output& out)
+{
+    for (const Vec3& p : mesh.positions) out << "v " << p << "\n";
+    for (const Vec3& n : normals) out << "vn " << n << "\n";
+    for (const Triangle& t : mesh.faces) {
+        out << "f";
+        for (int v : t) {
+            out << " " << v + 1;
+            if (!normals.empty()) out << "//" << v + 1;
+        }
+        out << "\n";
+    }
+}
+
+void writeOff(const Mesh& mesh, std::span<const Vec3> normals, Output& out)
+{
+    out << (normals.empty() ? "OFF\n" : "NOFF\n") << mesh.vertexCount() << " " << mesh.faceCount() << " 0\n";
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+        out << mesh.positions[v];
+        if (!normals.empty()) out << " " << normals[v];
+        out << "\n";
+    }
+    for (const Triangle& t : mesh.faces) out << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
+}
+
+bool exactInFloat(const Mesh& mesh)
+{
+    return std::all_of(mesh.positions.begin(), mesh.positions.end(),
+                       [](const Vec3& p) { return p == p.cast<float>().cast<double>(); });
+}
+
+void writePly(const Mesh& mesh, std::span<const Vec3> normals, Encoding encoding, Output& out)
+{
+    const bool isFloat = exactInFloat(mesh);
+    out << "ply\nformat "
+        << (encoding == Encoding::Ascii    ? "ascii"
+            : encoding == Encoding::Binary ? "binary_little_endian"
+                                           : "binary_big_endian")
+        << " 1.0\nelement vertex " << mesh.vertexCount() << "\n";
+    for (const char* axis : {"x", "y", "z"}) out << "property " << (isFloat ? "float " : "double ") << axis << "\n";
+    if (!normals.empty())
+        for (const char* axis : {"nx", "ny", "nz"}) out << "property float " << axis << "\n";
+    out << "element face " << mesh.faceCount() << "\nproperty list uchar int vertex_indices\nend_header\n";
+
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+        if (encoding == Encoding::Ascii) {
+            out << mesh.positions[v];
+            if (!normals.empty())
+                for (double x : normals[v]) out << " " << static_cast<float>(x);
+            out << "\n";
+            continue;
+        }
+        for (double x : mesh.positions[v]) {
+            if (isFloat) out.binary(static_cast<float>(x));
+            else out.binary(x);
+        }
+        if (!normals.empty())
+            for (double x : normals[v]) out.binary(static_cast<float>(x));
+    }
+    for (const Triangle& t : mesh.faces) {
+        if (encoding == Encoding::Ascii) {
+            out << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
+            continue;
+        }
+        out.binary(3, 1);
+        for (int v : t) out.binary(static_cast<uint64_t>(v), 4);
+    }
+}
+
+void writeStl(const Mesh& mesh, Encoding encoding, Output& out)
+{
+    using Vec3f = Eigen::Vector3f;
+    if (encoding == Encoding::Ascii) out << "solid mesh\n";
+    else {
+        std::string header = "binary STL"; // a text file is one that starts with "solid"
+        header.resize(80, ' ');
+        out << header;
+        out.binary(static_cast<uint64_t>(mesh.faceCount()), 4);
+    }
+    for (const Triangle& t : mesh.faces) {
+        const Vec3& p = mesh.positions[t[0]];
+        const Vec3f normal = (mesh.positions[t[1]] - p)
+                                 .stableNormalized()
+                                 .cross((mesh.positions[t[2]] - p).stableNormalized())
+                                 .stableNormalized()
+                                 .cast<float>();
+        if (encoding == Encoding::Ascii) {
+            out << "facet normal " << normal[0] << " " << normal[1] << " " << normal[2] << "\nouter loop\n";
+            for (int v : t) {
+                const Vec3f q = mesh.positions[v].cast<float>();
+                out << "vertex " << q[0] << " " << q[1] << " " << q[2] << "\n";
+            }
+            out << "endloop\nendfacet\n";
+            continue;
+        }
+        for (float x : normal) out.binary(x);
+        for (int v : t)
+            for (double x : mesh.positions[v]) out.binary(static_cast<float>(x));
+        out.binary(0, 2);
+    }
+    if (encoding == Encoding::Ascii) out << "endsolid mesh\n";
+}
+
+Status checked(const Mesh& mesh, MeshFormat format, std::span<const Vec3> normals, Encoding encoding)
+{
+    for (size_t f = 0; f < mesh.faces.size(); ++f)
+        for (int v : mesh.faces[f])
+            if (v < 0 || v >= mesh.vertexCount())
+                return Error{ErrorKind::BadArgument, "face " + std::to_string(f) + " names vertex " + std::to_string(v) +
+                                                         " of " + std::to_string(mesh.vertexCount())};
+    if (!normals.empty() && normals.size() != mesh.positions.size())
+        return Error{ErrorKind::BadArgument, std::to_string(normals.size()) + " normals for " +
+                                                 std::to_string(mesh.vertexCount()) + " vertices"};
+    if (format == MeshFormat::Stl && encoding == Encoding::BinaryBigEndian)
+        return Error{ErrorKind::BadArgument, "binary STL is little-endian"};
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+        const Vec3& p = mesh.positions[v];
+        const bool fits = format == MeshFormat::Stl ? p.cast<float>().allFinite() : p.allFinite();
+        if (!fits || (!normals.empty() && !normals[v].allFinite()))
+            return Error{ErrorKind::NotFinite, "vertex " + std::to_string(v) + " is not finite"};
+    }
+    return Done{};
+}
+
+} // namespace
+
+Status writeMesh(const Mesh& mesh, const std::string& path, std::span<const Vec3> normals, Encoding encoding)
+try {
+    const Result<MeshFormat> format = meshFormat(path);
+    if (!format) return format.error();
+    if (const Status status = checked(mesh, *format, normals, encoding); !status)
+        return Error{status.error().kind, path + ": " + status.error().message};
+
+    Output out(encoding == Encoding::BinaryBigEndian);
+    switch (*format) {
+    case MeshFormat::Obj: writeObj(mesh, normals, out); break;
+    case MeshFormat::Ply: writePly(mesh, normals, encoding, out); break;
+    case MeshFormat::Off: writeOff(mesh, normals, out); break;
+    case MeshFormat::Stl: writeStl(mesh, encoding, out); break;
+    }
+    std::ofstream file(path, std::ios::binary);
+    file.write(out.bytes().data(), static_cast<std::streamsize>(out.bytes().size()));
+    file.close();
+    if (!file) return Error{ErrorKind::FileNotWritable, path + ": cannot be written"};
+    return Done{};
+} catch (const std::exception& failure) {
+    return Error{ErrorKind::FileNotWritable, path + ": " + failure.what()};
+}
+
+} // namespace gimg

@@ -1,0 +1,225 @@
+#include "gimg/stretch.h"
+
+#include "stretch_element.h"
+
+#include <Eigen/CholmodSupport>
+#include <Eigen/Sparse>
+#include <tbb/parallel_for.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace gimg {
+namespace {
+
+using SparseMatrix = Eigen::SparseMatrix<double>;
+
+// Sums in index order, so that the result does not depend on the number of threads.
+template <class Term> double orderedSum(int count, std::vector<double>& scratch, Term term)
+{
+    scratch.resize(static_cast<size_t>(count));
+    tbb::parallel_for(0, count, [&](int i) { scratch[i] = term(i); });
+    double sum = 0;
+    for (double x : scratch) sum += x;
+    return sum;
+}
+
+class StretchDescent
+{
+public:
+    StretchDescent(const Mesh& mesh, const std::vector<bool>& fixed, std::vector<Vec2>& st)
+        : mesh_(mesh), st_(st), unknown_(mesh.positions.size(), -1)
+    {
+        for (const Triangle& f : mesh.faces)
+            for (int v : f)
+                if (!fixed[v] && unknown_[v] < 0) unknown_[v] = unknowns_++;
+        elements_.reserve(mesh.faces.size());
+        for (const Triangle& f : mesh.faces)
+            elements_.emplace_back(mesh.positions[f[0]], mesh.positions[f[1]], mesh.positions[f[2]]);
+        if (unknowns_ > 0) buildPattern();
+    }
+
+    double run(const DescentOptions& options)
+    {
+        double energy = energyAt(st_);
+        if (unknowns_ == 0) return energy;
+        solver_.cholmod().print = 0; // a failed factorization is handled, not reported
+        solver_.analyzePattern(hessian_);
+        for (int iteration = 0; iteration < options.maxIterations; ++iteration) {
+            assemble();
+            if (!factorize()) break;
+            const Eigen::VectorXd step = solver_.solve(-gradient_);
+            const double slope = gradient_.dot(step);
+            if (!(slope < 0)) break;
+            const double lowered = lineSearch(step, slope, energy);
+            const double gain = energy - lowered;
+            energy = lowered;
+            if (gain < options.tolerance * energy) break;
+        }
+        return energy;
+    }
+
+private:
+    std::array<Vec2, 3> corners(int f, const std::vector<Vec2>& st) const
+    {
+        const Triangle& t = mesh_.faces[f];
+        return {st[t[0]], st[t[1]], st[t[2]]};
+    }
+
+    double energyAt(const std::vector<Vec2>& st)
+    {
+        return orderedSum(mesh_.faceCount(), scratch_, [&](int f) { return elements_[f].energy(corners(f, st)); });
+    }
+
+    // Row of the local unknown k (0..2: s of corner k, 3..5: t), -1 where the vertex is fixed.
+    int row(int f, int k) const
+    {
+        const int u = unknown_[mesh_.faces[f][k % 3]];
+        return u < 0 ? -1 : 2 * u + k / 3;
+    }
+
+    void buildPattern()
+    {
+        std::vector<Eigen::Triplet<double>> entries;
+        for (int f = 0; f < mesh_.faceCount(); ++f)
+            for (int i = 0; i < 6; ++i)
+                for (int j = 0; j < 6; ++j)
+                    if (row(f, i) >= row(f, j) && row(f, j) >= 0) entries.emplace_back(row(f, i), row(f, j), 0.0);
+        hessian_.resize(2 * unknowns_, 2 * unknowns_);
+        hessian_.setFromTriplets(entries.begin(), entries.end());
+        hessian_.makeCompressed();
+        slot_.assign(elements_.size() * 36, -1);
+        tbb::parallel_for(0, mesh_.faceCount(), [&](int f) {
+            for (int i = 0; i < 6; ++i)
+                for (int j = 0; j < 6; ++j) {
+                    if (!(row(f, i) >= row(f, j) && row(f, j) >= 0)) continue;
+                    const int* begin = hessian_.innerIndexPtr() + hessian_.outerIndexPtr()[row(f, j)];
+                    const int* end = hessian_.innerIndexPtr() + hessian_.outerIndexPtr()[row(f, j) + 1];
+                    slot_[static_cast<size_t>(f) * 36 + 6 * i + j] =
+                        static_cast<int>(std::lower_bound(begin, end, row(f, i)) - hessian_.innerIndexPtr());
+                }
+        });
+        derivatives_.resize(elements_.size());
+    }
+
+    void assemble()
+    {
+        tbb::parallel_for(0, mesh_.faceCount(),
+                          [&](int f) { derivatives_[f] = elements_[f].derivatives(corners(f, st_)); });
+        gradient_.setZero(2 * unknowns_);
+        double* values = hessian_.valuePtr();
+        std::fill(values, values + hessian_.nonZeros(), 0.0);
+        for (int f = 0; f < mesh_.faceCount(); ++f) {
+            const StretchElement::Derivatives& d = derivatives_[f];
+            for (int i = 0; i < 6; ++i) {
+                if (row(f, i) >= 0) gradient_[row(f, i)] += d.gradient[i];
+                for (int j = 0; j < 6; ++j) {
+                    const int slot = slot_[static_cast<size_t>(f) * 36 + 6 * i + j];
+                    if (slot >= 0) values[slot] += d.hessian(i, j);
+                }
+            }
+        }
+    }
+
+    // The matrix is positive semi-definite but for rounding; where that shows, the diagonal grows.
+    bool factorize()
+    {
+        for (double shift = 1e-10; shift < 1; shift *= 100) {
+            for (int k = 0; k < 2 * unknowns_; ++k) hessian_.valuePtr()[hessian_.outerIndexPtr()[k]] *= 1 + shift;
+            solver_.factorize(hessian_);
+            if (solver_.info() == Eigen::Success) return true;
+        }
+        return false;
+    }
+
+    void moved(const Eigen::VectorXd& step, double t, std::vector<Vec2>& out) const
+    {
+        out = st_;
+        for (size_t v = 0; v < out.size(); ++v)
+            if (unknown_[v] >= 0) out[v] += t * step.segment<2>(2 * unknown_[v]);
+    }
+
+    // Largest t at which no triangle has collapsed yet.
+    double stepToFirstCollapse(const Eigen::VectorXd& step) const
+    {
+        double limit = std::numeric_limits<double>::infinity();
+        for (int f = 0; f < mesh_.faceCount(); ++f) {
+            const std::array<Vec2, 3> p = corners(f, st_);
+            Vec2 d[3];
+            for (int k = 0; k < 3; ++k) {
+                const int u = unknown_[mesh_.faces[f][k]];
+                d[k] = u < 0 ? Vec2(0, 0) : Vec2(step.segment<2>(2 * u));
+            }
+            limit = std::min(limit, firstCollapse(p, {d[0], d[1], d[2]}));
+        }
+        return limit;
+    }
+
+    double lineSearch(const Eigen::VectorXd& step, double slope, double energy)
+    {
+        double t = std::min(1.0, 0.9 * stepToFirstCollapse(step));
+        std::vector<Vec2> trial, best;
+        for (int halvings = 0; halvings < 40; ++halvings, t *= 0.5) {
+            moved(step, t, trial);
+            double lowered = energyAt(trial);
+            if (!(lowered <= energy + 1e-4 * t * slope)) continue;
+            // Far from the minimum the convexified step is short: lengthen it while that pays.
+            if (halvings == 0)
+                for (double longer = 1.6 * t; longer < 20; longer *= 1.6) {
+                    moved(step, longer, best);
+                    const double further = energyAt(best);
+                    if (!(further < lowered)) break;
+                    lowered = further;
+                    trial.swap(best);
+                }
+            st_.swap(trial);
+            return lowered;
+        }
+        return energy;
+    }
+
+    const Mesh& mesh_;
+    std::vector<Vec2>& st_;
+    std::vector<int> unknown_; // per vertex: its index among the free ones, or -1
+    int unknowns_ = 0;
+    std::vector<StretchElement> elements_;
+    std::vector<StretchElement::Derivatives> derivatives_;
+    std::vector<int> slot_; // where entry (i,j) of a face's 6 x 6 block lies among the matrix values
+    SparseMatrix hessian_;  // lower triangle
+    Eigen::VectorXd gradient_;
+    std::vector<double> scratch_;
+    Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> solver_;
+};
+
+} // namespace
+
+double stretchEnergy(const Mesh& mesh, const std::vector<Vec2>& st)
+{
+    double energy = 0;
+    for (const Triangle& f : mesh.faces)
+        energy += StretchElement(mesh.positions[f[0]], mesh.positions[f[1]], mesh.positions[f[2]])
+                      .energy({st[f[0]], st[f[1]], st[f[2]]});
+    return energy;
+}
+
+double stretchEfficiency(const Mesh& mesh, const std::vector<Vec2>& st)
+{
+    const double area = surfaceArea(mesh);
+    return area * area / stretchEnergy(mesh, st);
+}
+
+int flippedTriangles(const std::vector<Triangle>& faces, const std::vector<Vec2>& st)
+{
+    int flipped = 0;
+    for (const Triangle& f : faces) flipped += !(doubleArea({st[f[0]], st[f[1]], st[f[2]]}) > 0);
+    return flipped;
+}
+
+double minimizeStretch(const Mesh& mesh, const std::vector<bool>& fixed, std::vector<Vec2>& st,
+                       const DescentOptions& options)
+{
+    return StretchDescent(mesh, fixed, st).run(options);
+}
+
+} // namespace gimg
