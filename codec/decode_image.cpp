@@ -1,0 +1,247 @@
+#include "arena.h"
+#include "fuse.h"
+#include "image_header.h"
+#include "range_decoder.h"
+
+#include <cmath>
+#include <cstring>
+#include <zlib.h>
+
+namespace gimg::codec {
+
+namespace {
+
+constexpr double kLargestFloat = 3.4028234663852886e38;
+// zlib's inflate asks for its state and a 32 KiB window; variants of zlib for a little more.
+constexpr std::size_t kInflateMemory = std::size_t{1} << 17;
+
+bool isFinite(float value) { return value - value == 0.0f; }
+
+bool stepInRange(float step) { return step >= kSmallestStep && step <= kLargestStep; }
+
+std::size_t samplesOf(std::uint32_t grid) { return std::size_t{grid} * grid; }
+
+std::size_t coarseSamplesOf(std::uint32_t grid) { return samplesOf((grid + 1) / 2); }
+
+std::size_t rowScratchOf(std::uint32_t grid)
+{
+    return kComponents * NeighbourRows::scratchSize(grid / 2 + 1);
+}
+
+struct PlainPick
+{
+    std::int32_t operator()(RangeDecoder& decoder, const CoefficientContext& context, unsigned, std::size_t) const
+    {
+        return codeDetail(decoder, context, 0);
+    }
+};
+
+struct NothingKnown
+{
+    bool operator()(unsigned, const Subband&) const { return false; }
+};
+
+ReadStatus decodeWavelet(const ImageHeader& header, const std::uint32_t* classes, bool diffuse, Arena& arena,
+                         float* out)
+{
+    const std::uint32_t grid = header.grid;
+    const std::size_t samples = samplesOf(grid);
+    QuantizedImage image;
+    image.grid = grid;
+    for (auto& plane : image.detail) {
+        plane = arena.take<std::int32_t>(samples);
+        if (plane == nullptr) return ReadStatus::Misuse;
+        std::memset(plane, 0, samples * sizeof *plane);
+    }
+    auto* rows = arena.take<std::int32_t>(rowScratchOf(grid));
+    auto* models = arena.take<CoefficientModels>(1);
+    auto* workA = arena.take<double>(samples);
+    auto* workB = arena.take<double>(coarseSamplesOf(grid));
+    auto* ring = arena.take<double>(2 * std::size_t{borderSize(grid)});
+    if (rows == nullptr || models == nullptr || workA == nullptr || workB == nullptr || ring == nullptr)
+        return ReadStatus::Misuse;
+
+    RangeDecoder decoder(header.samples);
+    const CoefficientModels fresh;
+    std::memcpy(static_cast<void*>(models), &fresh, sizeof fresh);
+    const PlainPick pick;
+    const NothingKnown nothing;
+    codeImage(decoder, *models, image, pick, nothing, rows);
+    if (!decoder.finished()) return ReadStatus::Corrupt;
+
+    const Dequantizer dequantize = Dequantizer::fromByte(header.step, header.shifts);
+    for (unsigned c = 0; c < kComponents; ++c) {
+        reconstructComponent(image, c, dequantize, workA, workB);
+        if (classes != nullptr) fuseBorder(workA, grid, classes, diffuse, ring);
+        for (std::size_t k = 0; k < samples; ++k) {
+            const double value = workA[k];
+            if (!(value <= kLargestFloat && value >= -kLargestFloat)) return ReadStatus::Corrupt;
+            out[kComponents * k + c] = static_cast<float>(value);
+        }
+    }
+    return ReadStatus::Ok;
+}
+
+ReadStatus decodeRaw12(const ImageHeader& header, float* out)
+{
+    const std::uint8_t* bytes = header.samples.data;
+    const std::size_t count = kComponents * samplesOf(header.grid);
+    for (std::size_t k = 0; k < count; ++k) {
+        const std::uint8_t* pair = bytes + k / 2 * 3;
+        const std::uint32_t q = k % 2 == 0 ? pair[0] | (pair[1] & 0x0Fu) << 8 : pair[1] >> 4 | pair[2] << 4;
+        const double value = static_cast<double>(header.least[k % kComponents]) + q * static_cast<double>(header.step);
+        if (!(value <= kLargestFloat && value >= -kLargestFloat)) return ReadStatus::Corrupt;
+        out[k] = static_cast<float>(value);
+    }
+    // The count is odd, so half a byte is left over.
+    if (bytes[header.samples.size - 1] >> 4 != 0) return ReadStatus::Corrupt;
+    return ReadStatus::Ok;
+}
+
+void* takeForZlib(void* arena, unsigned items, unsigned size)
+{
+    return static_cast<Arena*>(arena)->take<unsigned char>(std::size_t{items} * size);
+}
+
+void leaveToArena(void*, void*) {}
+
+// Inflates into exactly `size` bytes.
+ReadStatus inflateExactly(format::ByteSpan packed, std::uint8_t* out, std::size_t size, Arena& arena)
+{
+    void* memory = arena.take<unsigned char>(kInflateMemory);
+    if (memory == nullptr) return ReadStatus::Misuse;
+    Arena pool(memory, kInflateMemory);
+    z_stream stream;
+    std::memset(&stream, 0, sizeof stream);
+    stream.zalloc = takeForZlib;
+    stream.zfree = leaveToArena;
+    stream.opaque = &pool;
+    if (inflateInit(&stream) != Z_OK) return ReadStatus::Misuse;
+    stream.next_in = const_cast<Bytef*>(packed.data);
+    stream.avail_in = static_cast<uInt>(packed.size);
+    stream.next_out = out;
+    stream.avail_out = static_cast<uInt>(size);
+    const int status = inflate(&stream, Z_FINISH);
+    const bool exact = status == Z_STREAM_END && stream.avail_out == 0 && stream.avail_in == 0;
+    inflateEnd(&stream);
+    return exact ? ReadStatus::Ok : ReadStatus::Corrupt;
+}
+
+// A float's bits are coded as the difference from the sample before in the row (or, at its beginning,
+// from the row below), the sign moved to the lowest bit; then bytes of equal rank lie together.
+ReadStatus decodeFloat(const ImageHeader& header, Arena& arena, float* out)
+{
+    const std::uint32_t grid = header.grid;
+    const std::size_t samples = samplesOf(grid);
+    auto* planes = arena.take<std::uint8_t>(4 * kComponents * samples);
+    if (planes == nullptr) return ReadStatus::Misuse;
+    const ReadStatus status = inflateExactly(header.samples, planes, 4 * kComponents * samples, arena);
+    if (status != ReadStatus::Ok) return status;
+    for (unsigned c = 0; c < kComponents; ++c) {
+        const std::uint8_t* plane = planes + 4 * c * samples;
+        for (std::size_t k = 0; k < samples; ++k) {
+            const std::uint32_t coded = plane[k] | std::uint32_t{plane[samples + k]} << 8 |
+                                        std::uint32_t{plane[2 * samples + k]} << 16 |
+                                        std::uint32_t{plane[3 * samples + k]} << 24;
+            const std::uint32_t difference = coded >> 1 ^ (~(coded & 1u) + 1u);
+            std::uint32_t bits = 0;
+            if (k > 0) std::memcpy(&bits, &out[kComponents * (k % grid == 0 ? k - grid : k - 1) + c], sizeof bits);
+            bits += difference;
+            std::memcpy(&out[kComponents * k + c], &bits, sizeof bits);
+            if ((bits >> 23 & 0xFFu) == 0xFFu) return ReadStatus::Corrupt;
+        }
+    }
+    return ReadStatus::Ok;
+}
+
+// In the raw codings glued samples agree already if the encoder was given a closed surface; taking the
+// first of each class leaves such samples alone to the bit, and closes the others.
+void copyFirstOfClass(float* out, std::uint32_t grid, const std::uint32_t* classes)
+{
+    for (std::uint32_t k = 0; k < borderSize(grid); ++k) {
+        if (classes[k] == k) continue;
+        std::memcpy(&out[kComponents * std::size_t{borderSample(grid, k)}],
+                    &out[kComponents * std::size_t{borderSample(grid, classes[k])}], kComponents * sizeof *out);
+    }
+}
+
+} // namespace
+
+ReadStatus readImageHeader(format::ByteSpan content, ImageHeader* header)
+{
+    // The chunk is known to be complete: what is missing inside it is an error of its own.
+    format::Reader in(content);
+    const std::uint8_t kind = in.u8();
+    if (in.failed()) return ReadStatus::Corrupt;
+    const unsigned exponent = kind & 0x0Fu, coding = kind >> 4 & 0x03u;
+    if (kind >> 6 != 0 || coding == 3) return ReadStatus::Unsupported;
+    if (exponent == 0 || exponent > kLargestExponent) return ReadStatus::Unsupported;
+    header->grid = (1u << exponent) + 1;
+    header->coding = static_cast<gim_coding>(coding);
+    if (header->coding == GIM_CODING_WAVELET) {
+        header->step = in.f32();
+        header->shifts = in.u8();
+    } else if (header->coding == GIM_CODING_RAW12) {
+        for (float& least : header->least) least = in.f32();
+        header->step = in.f32();
+    }
+    if (in.failed()) return ReadStatus::Corrupt;
+    if (header->coding != GIM_CODING_FLOAT && !stepInRange(header->step)) return ReadStatus::Corrupt;
+    for (const float least : header->least)
+        if (!isFinite(least)) return ReadStatus::Corrupt;
+    header->fixedBytes = in.offset();
+    header->samples = in.span(in.remaining());
+    if (header->coding == GIM_CODING_RAW12 && header->samples.size != raw12Size(header->grid))
+        return ReadStatus::Corrupt;
+    return ReadStatus::Ok;
+}
+
+std::uint64_t imageWorkspace(const ImageHeader& header)
+{
+    const std::size_t samples = samplesOf(header.grid);
+    if (header.coding == GIM_CODING_RAW12) return 0;
+    if (header.coding == GIM_CODING_FLOAT)
+        return Arena::sizeOf<std::uint8_t>(4 * kComponents * samples) + Arena::sizeOf<std::uint8_t>(kInflateMemory);
+    return kComponents * Arena::sizeOf<std::int32_t>(samples) +
+           Arena::sizeOf<std::int32_t>(rowScratchOf(header.grid)) + Arena::sizeOf<CoefficientModels>(1) +
+           Arena::sizeOf<double>(samples) + Arena::sizeOf<double>(coarseSamplesOf(header.grid)) +
+           Arena::sizeOf<double>(2 * std::size_t{borderSize(header.grid)});
+}
+
+ReadStatus decodeImage(const ImageHeader& header, const std::uint32_t* classes, bool diffuse, Arena& arena,
+                       float* out)
+{
+    if (header.coding == GIM_CODING_WAVELET) return decodeWavelet(header, classes, diffuse, arena, out);
+    const ReadStatus status =
+        header.coding == GIM_CODING_RAW12 ? decodeRaw12(header, out) : decodeFloat(header, arena, out);
+    if (status == ReadStatus::Ok && classes != nullptr) copyFirstOfClass(out, header.grid, classes);
+    return status;
+}
+
+void normalize(float* vectors, std::size_t count)
+{
+    for (std::size_t k = 0; k < count; ++k) {
+        float* v = vectors + 3 * k;
+        const double x = v[0], y = v[1], z = v[2];
+        // Twice, because the square of a very small component is less than any number.
+        const double largest = [](double a, double b, double c) {
+            a = a < 0 ? -a : a;
+            b = b < 0 ? -b : b;
+            c = c < 0 ? -c : c;
+            const double ab = a < b ? b : a;
+            return ab < c ? c : ab;
+        }(x, y, z);
+        if (largest == 0) {
+            v[0] = v[1] = 0;
+            v[2] = 1;
+            continue;
+        }
+        const double sx = x / largest, sy = y / largest, sz = z / largest;
+        const double length = std::sqrt(sx * sx + sy * sy + sz * sz);
+        v[0] = static_cast<float>(sx / length);
+        v[1] = static_cast<float>(sy / length);
+        v[2] = static_cast<float>(sz / length);
+    }
+}
+
+} // namespace gimg::codec

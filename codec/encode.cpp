@@ -1,0 +1,318 @@
+#include "encode.h"
+
+#include "border.h"
+#include "container.h"
+#include "image_header.h"
+#include "writer.h"
+
+#include <algorithm>
+#include <cmath>
+#include <functional>
+#include <zlib.h>
+
+namespace gimg::codec {
+
+namespace {
+
+using Bytes = std::vector<std::uint8_t>;
+
+/// Steps finer than this part of the diagonal spend bytes on the noise of float32 samples.
+constexpr double kFinestPart = 0x1p-21;
+constexpr double kNormalShare = 0.25;
+
+EncodeError badSource(std::string message) { return {EncodeError::Kind::BadSource, std::move(message), 0}; }
+
+unsigned exponentOf(std::uint32_t grid) { return log2Floor(grid - 1); }
+
+bool isGridSize(std::uint32_t n)
+{
+    return n >= 3 && n <= (1u << kLargestExponent) + 1 && ((n - 1) & (n - 2)) == 0;
+}
+
+std::string imageFault(const char* name, std::span<const float> samples, std::uint32_t grid, std::uint32_t lowest)
+{
+    const std::string what = name;
+    if (!isGridSize(grid)) return what + ": the grid is not 2^j + 1 samples a side with j in 1..12";
+    if (grid < lowest) return what + ": the grid is smaller than the lowest level";
+    if (samples.size() != std::size_t{grid} * grid * kComponents) return what + ": the number of samples does not fit the grid";
+    const auto bad = std::find_if(samples.begin(), samples.end(), [](float value) { return !std::isfinite(value); });
+    if (bad != samples.end())
+        return what + ": sample " + std::to_string((bad - samples.begin()) / 3) + " is not finite";
+    return {};
+}
+
+Bytes imageContent(std::uint32_t grid, gim_coding coding)
+{
+    return {static_cast<std::uint8_t>(exponentOf(grid) | static_cast<unsigned>(coding) << 4)};
+}
+
+Bytes waveletContent(const TransformedImage& image, float step)
+{
+    const CodedImage coded = encodeCoefficients(image, step);
+    Bytes content = imageContent(image.grid, GIM_CODING_WAVELET);
+    format::appendF32(content, step);
+    content.push_back(coded.shifts);
+    for (const std::uint8_t byte : coded.payload) content.push_back(byte);
+    return content;
+}
+
+struct Raw12
+{
+    Bytes content;
+    float step = 0;
+};
+
+Raw12 raw12Content(std::span<const float> samples, std::uint32_t grid)
+{
+    float least[kComponents], most[kComponents];
+    for (unsigned c = 0; c < kComponents; ++c) least[c] = most[c] = samples[c];
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const std::size_t c = k % kComponents;
+        least[c] = std::min(least[c], samples[k]);
+        most[c] = std::max(most[c], samples[k]);
+    }
+    double side = 0;
+    for (unsigned c = 0; c < kComponents; ++c)
+        side = std::max(side, static_cast<double>(most[c]) - static_cast<double>(least[c]));
+    Raw12 out;
+    out.step = std::clamp(static_cast<float>(side / 4095), kSmallestStep, kLargestStep);
+    out.content = imageContent(grid, GIM_CODING_RAW12);
+    for (const float value : least) format::appendF32(out.content, value);
+    format::appendF32(out.content, out.step);
+    std::uint32_t bits = 0;
+    unsigned count = 0;
+    for (std::size_t k = 0; k < samples.size(); ++k) {
+        const double offset = static_cast<double>(samples[k]) - static_cast<double>(least[k % kComponents]);
+        const auto q = static_cast<std::uint32_t>(std::clamp(std::lround(offset / static_cast<double>(out.step)), 0l, 4095l));
+        bits |= q << count;
+        for (count += 12; count >= 8; count -= 8, bits >>= 8) out.content.push_back(static_cast<std::uint8_t>(bits));
+    }
+    if (count > 0) out.content.push_back(static_cast<std::uint8_t>(bits));
+    return out;
+}
+
+std::uint32_t bitsOf(float value)
+{
+    std::uint32_t bits;
+    std::memcpy(&bits, &value, sizeof bits);
+    return bits;
+}
+
+Bytes floatContent(std::span<const float> samples, std::uint32_t grid)
+{
+    const std::size_t count = std::size_t{grid} * grid;
+    Bytes planes(4 * samples.size());
+    for (unsigned c = 0; c < kComponents; ++c)
+        for (std::size_t k = 0; k < count; ++k) {
+            const std::uint32_t before =
+                k == 0 ? 0 : bitsOf(samples[kComponents * (k % grid == 0 ? k - grid : k - 1) + c]);
+            const std::uint32_t difference = bitsOf(samples[kComponents * k + c]) - before;
+            const std::uint32_t coded = difference << 1 ^ ((difference >> 31) != 0 ? 0xFFFFFFFFu : 0u);
+            for (unsigned b = 0; b < 4; ++b)
+                planes[(4 * c + b) * count + k] = static_cast<std::uint8_t>(coded >> 8 * b);
+        }
+    Bytes content = imageContent(grid, GIM_CODING_FLOAT);
+    uLongf packed = compressBound(static_cast<uLong>(planes.size()));
+    content.resize(1 + packed);
+    compress2(content.data() + 1, &packed, planes.data(), static_cast<uLong>(planes.size()), Z_BEST_COMPRESSION);
+    content.resize(1 + packed);
+    return content;
+}
+
+Bytes assemble(std::uint32_t lowest, const Bytes& word, const Bytes& geometry, const Bytes* normals)
+{
+    Bytes seam(1 + word.size(), static_cast<std::uint8_t>(exponentOf(lowest)));
+    std::copy(word.begin(), word.end(), seam.begin() + 1);
+    format::Writer writer;
+    writer.addChunk(format::kSeamChunk, seam);
+    writer.addChunk(format::kGeometryChunk, geometry);
+    if (normals != nullptr) writer.addChunk(format::kNormalChunk, *normals);
+    return writer.finish();
+}
+
+struct Candidate
+{
+    Bytes content;
+    float step = 0;
+};
+
+std::string stepFault(const TransformedImage& image, float step, const char* name)
+{
+    if (!(step > 0) || step > kLargestStep) return std::string(name) + " is not a positive number in range";
+    if (step < smallestStep(image)) return std::string(name) + " is too small for these samples";
+    return {};
+}
+
+struct StepRange
+{
+    float finest = 0, coarsest = 0;
+};
+
+StepRange sensibleSteps(const TransformedImage& image)
+{
+    const float least = smallestStep(image);
+    const float finest = std::max(least, static_cast<float>(image.diagonal * kFinestPart));
+    // A step twice as large as any coefficient leaves nothing to code.
+    const float coarsest = std::clamp(static_cast<float>(2.1 * image.largest), finest, kLargestStep);
+    return {finest, coarsest};
+}
+
+/// The finest wavelet coding whose chunk takes at most `target` bytes, found by closing in on the step.
+/// Size falls nearly linearly with the logarithm of the step over small ranges, so secants are tried
+/// first, and halving where they are slow.
+std::variant<Candidate, EncodeError> searchStep(const TransformedImage& image, std::size_t target)
+{
+    const auto attempt = [&](float step) { return Candidate{waveletContent(image, step), step}; };
+    const auto sizeOf = [](const Candidate& candidate) { return format::chunkSize(candidate.content.size()); };
+    const StepRange range = sensibleSteps(image);
+
+    Candidate best = attempt(range.coarsest);
+    std::size_t bestSize = sizeOf(best);
+    if (bestSize > target) return EncodeError{EncodeError::Kind::TooSmall, {}, bestSize};
+
+    // Halve from a likely step until the target is bracketed: `high` is too many bytes, `low` is not.
+    double lowStep = std::log2(static_cast<double>(range.coarsest)), highStep = 0;
+    std::size_t lowSize = bestSize, highSize = 0;
+    double guess = std::log2(static_cast<double>(range.coarsest)) - 4;
+    const double floor = std::log2(static_cast<double>(range.finest));
+    for (double stride = 2; highSize == 0;) {
+        const bool atFloor = guess <= floor;
+        Candidate candidate = attempt(atFloor ? range.finest : static_cast<float>(std::exp2(guess)));
+        const std::size_t size = sizeOf(candidate);
+        if (size > target) {
+            highStep = std::log2(static_cast<double>(candidate.step));
+            highSize = size;
+            break;
+        }
+        lowStep = std::log2(static_cast<double>(candidate.step));
+        lowSize = size;
+        best = std::move(candidate);
+        bestSize = size;
+        if (atFloor) return EncodeError{EncodeError::Kind::TooLarge, {}, size};
+        guess -= stride;
+    }
+
+    const std::size_t close = target / 1000 + 1;
+    for (int round = 0; round < 40 && target - bestSize > close; ++round) {
+        double part = 0.5;
+        if (round % 3 != 2) {
+            const double wanted = static_cast<double>(target) - 0.4 * static_cast<double>(close);
+            // In logarithms of the sizes the curve is straighter still.
+            part = (std::log(wanted) - std::log(static_cast<double>(lowSize))) /
+                   (std::log(static_cast<double>(highSize)) - std::log(static_cast<double>(lowSize)));
+            part = std::clamp(part, 0.02, 0.98);
+        }
+        const auto step = static_cast<float>(std::exp2(lowStep + part * (highStep - lowStep)));
+        Candidate candidate = attempt(step);
+        const double exactStep = std::log2(static_cast<double>(step));
+        if (exactStep >= lowStep || exactStep <= highStep) break;
+        const std::size_t size = sizeOf(candidate);
+        if (size > target) {
+            highStep = exactStep;
+            highSize = size;
+            continue;
+        }
+        lowStep = exactStep;
+        lowSize = size;
+        if (size >= bestSize) {
+            best = std::move(candidate);
+            bestSize = size;
+        }
+    }
+    return best;
+}
+
+} // namespace
+
+Outcome<Encoder> Encoder::prepare(const Source& source)
+{
+    if (std::string fault = seamFault(source.seam); !fault.empty()) return badSource("seam: " + fault);
+    if (std::string fault = imageFault("geometry", source.xyz, source.grid, source.seam.lowest); !fault.empty())
+        return badSource(fault);
+    Encoder encoder;
+    encoder.seam_ = source.seam;
+    encoder.word_ = encodeSeam(source.seam);
+    encoder.xyz_.assign(source.xyz.begin(), source.xyz.end());
+    encoder.geometry_ = transform(source.xyz, source.grid);
+    if (encoder.geometry_.largest > static_cast<double>(kLargestStep) / 4) return badSource("geometry: the coordinates are too large");
+    if (source.normalGrid != 0) {
+        if (std::string fault = imageFault("normals", source.normals, source.normalGrid, source.seam.lowest); !fault.empty())
+            return badSource(fault);
+        encoder.normals_.assign(source.normals.begin(), source.normals.end());
+        encoder.normalImage_ = transform(source.normals, source.normalGrid);
+    }
+    return encoder;
+}
+
+Outcome<EncodedFile> Encoder::encode(const Settings& settings) const
+{
+    EncodedFile file;
+    Bytes content[2];
+    const TransformedImage* images[2] = {&geometry_, normalImage_ ? &*normalImage_ : nullptr};
+    const std::vector<float>* samples[2] = {&xyz_, &normals_};
+    const float wanted[2] = {settings.step, settings.normalStep};
+    float written[2] = {};
+    for (int k = 0; k < 2 && images[k] != nullptr; ++k) {
+        switch (settings.coding) {
+        case GIM_CODING_WAVELET: {
+            const std::string fault = stepFault(*images[k], wanted[k], k == 0 ? "the step" : "the normals' step");
+            if (!fault.empty()) return EncodeError{EncodeError::Kind::BadSettings, fault, 0};
+            content[k] = waveletContent(*images[k], wanted[k]);
+            written[k] = wanted[k];
+            break;
+        }
+        case GIM_CODING_RAW12: {
+            Raw12 raw = raw12Content(*samples[k], images[k]->grid);
+            content[k] = std::move(raw.content);
+            written[k] = raw.step;
+            break;
+        }
+        case GIM_CODING_FLOAT: content[k] = floatContent(*samples[k], images[k]->grid); break;
+        default: return EncodeError{EncodeError::Kind::BadSettings, "no such coding", 0};
+        }
+    }
+    file.step = written[0];
+    file.normalStep = written[1];
+    file.bytes = assemble(seam_.lowest, word_, content[0], normalImage_ ? &content[1] : nullptr);
+    return file;
+}
+
+Outcome<EncodedFile> Encoder::encodeToBytes(std::size_t target) const
+{
+    const std::size_t fixed = format::kHeaderSize + format::chunkSize(1 + word_.size());
+    const auto unreachable = [&](EncodeError error, std::size_t others) {
+        error.reachable += fixed + others;
+        error.message = std::string("the ") +
+                        (error.kind == EncodeError::Kind::TooSmall ? "smallest" : "largest sensible") +
+                        " file takes " + std::to_string(error.reachable) + " bytes";
+        return error;
+    };
+    const std::size_t room = target > fixed ? target - fixed : 0;
+
+    std::optional<Candidate> normals;
+    std::size_t normalSize = 0;
+    if (normalImage_) {
+        const auto share = static_cast<std::size_t>(static_cast<double>(room) * kNormalShare);
+        auto found = searchStep(*normalImage_, share);
+        if (EncodeError* error = std::get_if<EncodeError>(&found)) {
+            // A share that even the extreme steps do not meet is met as nearly as can be.
+            const StepRange range = sensibleSteps(*normalImage_);
+            const float step = error->kind == EncodeError::Kind::TooSmall ? range.coarsest : range.finest;
+            normals = Candidate{waveletContent(*normalImage_, step), step};
+        } else {
+            normals = std::move(std::get<Candidate>(found));
+        }
+        normalSize = format::chunkSize(normals->content.size());
+    }
+
+    auto found = searchStep(geometry_, room > normalSize ? room - normalSize : 0);
+    if (EncodeError* error = std::get_if<EncodeError>(&found)) return unreachable(*error, normalSize);
+    Candidate& geometry = std::get<Candidate>(found);
+    EncodedFile file;
+    file.bytes = assemble(seam_.lowest, word_, geometry.content, normals ? &normals->content : nullptr);
+    file.step = geometry.step;
+    file.normalStep = normals ? normals->step : 0.0f;
+    return file;
+}
+
+} // namespace gimg::codec

@@ -1,0 +1,44 @@
+#pragma once
+
+#include "bytes.h"
+#include "gim.h"
+#include "quantizer.h"
+
+namespace gimg::codec {
+
+using format::ReadStatus;
+
+constexpr unsigned kLargestExponent = 12; ///< 4097 samples a side
+
+/// The fixed fields at the beginning of an image's chunk, and what follows them.
+struct ImageHeader
+{
+    std::uint32_t grid = 0;
+    gim_coding coding = GIM_CODING_WAVELET;
+    float step = 0;         ///< wavelet: quantisation step; raw12: distance of neighbouring integers
+    std::uint8_t shifts = 0; ///< wavelet: see Dequantizer
+    float least[kComponents] = {}; ///< raw12: what integer 0 stands for
+    format::ByteSpan samples;      ///< the coded samples
+    std::size_t fixedBytes = 0;
+};
+
+/// Reads and checks the fixed fields of a geometry or normal chunk.
+ReadStatus readImageHeader(format::ByteSpan content, ImageHeader* header);
+
+/// Bytes of `samples` raw12 coding takes.
+constexpr std::uint64_t raw12Size(std::uint64_t grid) { return (grid * grid * kComponents * 12 + 7) / 8; }
+
+/// Bytes that decodeImage() takes from its arena.
+std::uint64_t imageWorkspace(const ImageHeader& header);
+
+class Arena;
+
+/// Decodes an image of three components into 3 grid^2 floats.
+/// @param classes  borderClasses() of the grid, or nullptr not to fuse
+ReadStatus decodeImage(const ImageHeader& header, const std::uint32_t* classes, bool diffuse, Arena& arena,
+                       float* out);
+
+/// Makes vectors as long as 1; a zero vector becomes (0, 0, 1).
+void normalize(float* vectors, std::size_t count);
+
+} // namespace gimg::codec

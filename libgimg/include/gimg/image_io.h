@@ -1,0 +1,54 @@
+#pragma once
+
+#include "gimg/mesh.h"
+#include "gimg/result.h"
+
+#include <cstddef>
+#include <string>
+#include <vector>
+
+namespace gimg {
+
+/// Three floats a pixel: x, y, z of a geometry image, or of a normal image. Row 0 holds t = 0 and is row 0 of every
+/// file, which viewers show at the top; column 0 holds s = 0.
+struct FloatImage
+{
+    int width = 0;
+    int height = 0;
+    std::vector<float> samples; ///< 3 * width * height, row after row
+
+    float at(int column, int row, int channel) const
+    {
+        return samples[(static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column)) * 3 +
+                       static_cast<size_t>(channel)];
+    }
+};
+
+/// The cube a geometry image is scaled into for viewing: its corner of least x, y, z, and the largest extent.
+struct BoundingCube
+{
+    Vec3 low = Vec3::Zero();
+    double side = 0;
+};
+BoundingCube boundingCube(const FloatImage& image);
+
+/// Writes x, y, z as red, green, blue: (value - low) / side of the bounding cube, times 255 or 65535, rounded. The
+/// three axes share one scale; an image without extent is black.
+/// Source: Gu, Gortler, Hoppe 2002 show geometry images this way.
+/// Errors: BadArgument (empty, or samples that do not fit the size), NotFinite (names the pixel), FileNotWritable.
+Status writePng8(const FloatImage& image, const std::string& path);
+Status writePng16(const FloatImage& image, const std::string& path);
+
+/// Writes unit normals with 8 bits a component: round((value + 1) / 2 * 255), clamped.
+/// Errors: as writePng8.
+Status writeNormalPng(const FloatImage& normals, const std::string& path);
+
+/// Writes every float as it is, channels R, G, B of type float, without loss.
+/// Errors: BadArgument, FileNotWritable.
+Status writeExr(const FloatImage& image, const std::string& path);
+
+/// Reads the channels R, G, B of an EXR file; half-float channels are widened.
+/// Errors: FileNotReadable, FileCorrupt (also: a channel is missing), BadArgument (above 32768 x 32768 pixels).
+Result<FloatImage> readExr(const std::string& path);
+
+} // namespace gimg

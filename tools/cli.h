@@ -1,0 +1,79 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
+#include <cstdint>
+#include <cstdio>
+#include <fstream>
+#include <iostream>
+#include <iterator>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+/// What the command-line tools share: exit codes, one-line errors, files and JSON.
+namespace gimg::cli {
+
+/// What a tool ends with.
+enum Exit : int
+{
+    Done = 0,
+    Refused = 1,     ///< the input cannot be read or used, or the output not written
+    Usage = 2,       ///< the command line is wrong
+    Unreachable = 3, ///< the target asked for cannot be met
+};
+
+/// Prints "TOOL: MESSAGE" on standard error and returns `code`, so that main can return fail(...).
+inline int fail(const std::string& tool, Exit code, const std::string& message)
+{
+    std::cerr << tool << ": " << message << '\n';
+    return code;
+}
+
+/// Reads the command line into `app`. The tool goes on if nothing is returned; otherwise it ends with
+/// what is returned: Done after --help and --version, Usage after printing what is wrong, on one line.
+inline std::optional<int> parse(CLI::App& app, int argc, char** argv)
+{
+    try {
+        app.parse(argc, argv);
+    } catch (const CLI::ParseError& error) {
+        if (error.get_exit_code() == static_cast<int>(CLI::ExitCodes::Success)) {
+            app.exit(error);
+            return Done;
+        }
+        return fail(app.get_name(), Usage, std::string(error.what()) + " (try --help)");
+    }
+    return std::nullopt;
+}
+
+/// The bytes of a file; nothing if it cannot be read.
+inline std::optional<std::vector<std::uint8_t>> readFile(const std::string& path)
+{
+    std::ifstream in(path, std::ios::binary);
+    if (!in) return std::nullopt;
+    std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
+    if (in.bad()) return std::nullopt;
+    return bytes;
+}
+
+/// Whether all bytes reached the file.
+inline bool writeFile(const std::string& path, const void* bytes, std::size_t size)
+{
+    std::ofstream out(path, std::ios::binary);
+    out.write(static_cast<const char*>(bytes), static_cast<std::streamsize>(size));
+    out.close();
+    return out.good();
+}
+
+/// Writes a JSON object, indented, to a file or, for "-", to standard output. Returns whether it was written.
+inline bool writeJson(const std::string& path, const nlohmann::ordered_json& object)
+{
+    const std::string text = object.dump(2) + '\n';
+    if (path != "-") return writeFile(path, text.data(), text.size());
+    std::cout << text << std::flush;
+    return std::cout.good();
+}
+
+} // namespace gimg::cli
