@@ -9,7 +9,8 @@ int main()
     gimg::Mesh octahedron;
     for (int axis = 0; axis < 3; ++axis)
         for (const double side : {1.0, -1.0}) octahedron.positions.push_back(side * gimg::Vec3::Unit(axis));
-    octahedron.faces = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4}, {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
+    octahedron.faces = {{0, 2, 4}, {2, 1, 4}, {1, 3, 4}, {3, 0, 4},
+                        {2, 0, 5}, {1, 2, 5}, {3, 1, 5}, {0, 3, 5}};
 
     if (const gimg::Status written = gimg::writeMesh(octahedron, "octahedron.ply"); !written) {
         std::cerr << written.error().message << '\n';
