@@ -1,5 +1,7 @@
 #include "gimg/border.h"
 
+#include "codec/seam.h"
+
 #include <algorithm>
 #include <cmath>
 #include <map>
@@ -9,7 +11,6 @@
 namespace gimg {
 namespace {
 
-constexpr int kDefaultGrid = 257;
 constexpr int kDefaultLowest = 33;
 constexpr int kLargestGrid = 4097;
 
@@ -158,7 +159,7 @@ std::optional<Layout> layoutAt(int lowest, const CutGraph& cut, const DiskMesh& 
     if (!length) return std::nullopt;
     const std::vector<gim_side> word = seamWord(disk.sides, cut, *length);
     for (int start : rotationsBestFirst(tipPositions(disk, cut, *length), lowest))
-        if (codec::seamIsSimplicial(word.data(), word.size(), static_cast<uint32_t>(start),
+        if (codec::seamIsSimplicial(word.data(), static_cast<uint32_t>(word.size()), static_cast<uint32_t>(start),
                                     static_cast<uint32_t>(lowest), static_cast<uint32_t>(lowest)))
             return Layout{lowest, start, *length};
     return std::nullopt;
@@ -353,7 +354,7 @@ Result<SquareDisk> layOutBorder(const Mesh& mesh, const CutGraph& cut, const Bor
     SquareDisk square;
     square.grid = options.grid;
     Result<Layout> layout = Error{ErrorKind::TargetUnreachable, ""};
-    for (int grid = options.grid != 0 ? options.grid : std::max(kDefaultGrid, options.lowest);
+    for (int grid = options.grid != 0 ? options.grid : std::max(BorderOptions::kDefaultGrid, options.lowest);
          grid <= kLargestGrid && !layout.ok(); grid = 2 * grid - 1) {
         layout = findLayout(cut, *disk, mesh, grid, options.lowest);
         square.grid = grid;

@@ -118,9 +118,9 @@ Result<Image> sampleValues(const SquareDisk& square, const Parameterization& par
     return image;
 }
 
-VectorImage toFloat(const Image& image)
+FloatImage toFloat(const Image& image)
 {
-    VectorImage out{image.n, {}};
+    FloatImage out{image.n, image.n, {}};
     out.samples.reserve(image.value.size() * 3);
     for (const Vec3& v : image.value)
         for (int k = 0; k < 3; ++k) out.samples.push_back(static_cast<float>(v[k]));
@@ -129,14 +129,14 @@ VectorImage toFloat(const Image& image)
 
 } // namespace
 
-Result<VectorImage> sampleGeometry(const SquareDisk& square, const Parameterization& parameterization, int n)
+Result<FloatImage> sampleGeometry(const SquareDisk& square, const Parameterization& parameterization, int n)
 {
     const Result<Image> image = sampleValues(square, parameterization, square.surface.positions, n);
     if (!image) return image.error();
     return toFloat(*image);
 }
 
-Result<VectorImage> sampleNormals(const SquareDisk& square, const Parameterization& parameterization, int n)
+Result<FloatImage> sampleNormals(const SquareDisk& square, const Parameterization& parameterization, int n)
 {
     Result<Image> image = sampleValues(square, parameterization, vertexNormals(square.surface), n);
     if (!image) return image.error();

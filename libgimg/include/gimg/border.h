@@ -5,7 +5,7 @@
 #include "gimg/mesh.h"
 #include "gimg/result.h"
 
-#include "seam.h"
+#include <gim.h>
 
 #include <cstdint>
 #include <vector>
@@ -14,6 +14,8 @@ namespace gimg {
 
 struct BorderOptions
 {
+    static constexpr int kDefaultGrid = 257;
+
     int grid = 0;   ///< samples a side, 2^j + 1; 0: 257, or the next larger grid that can hold the cut
     int lowest = 0; ///< lowest level of detail, 2^l + 1 <= grid; 0: 33 (less for small grids), or the next that fits
 };

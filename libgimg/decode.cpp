@@ -1,0 +1,77 @@
+#include "gimg/decode.h"
+
+#include <cstddef>
+#include <string>
+
+namespace gimg {
+namespace {
+
+Error decoderError(gim_status status)
+{
+    const std::string text = gim_status_text(status);
+    switch (status) {
+    case GIM_MORE_INPUT: return {ErrorKind::FileTruncated, text};
+    case GIM_CORRUPT: return {ErrorKind::FileCorrupt, text};
+    case GIM_MISUSE: return {ErrorKind::BadArgument, text};
+    default: return {ErrorKind::CodecFailure, text};
+    }
+}
+
+FloatImage emptyImage(uint32_t n)
+{
+    return {static_cast<int>(n), static_cast<int>(n), std::vector<float>(size_t{3} * n * n)};
+}
+
+} // namespace
+
+Result<DecodedImages> decodeImages(std::span<const uint8_t> file, unsigned flags)
+{
+    DecodedImages out{};
+    out.info.size = sizeof out.info;
+    gim_status status = gim_probe(file.data(), file.size(), nullptr, &out.info);
+    if (status != GIM_OK) return decoderError(status);
+    std::vector<std::byte> workspace(gim_workspace_size(&out.info));
+    out.geometry = emptyImage(out.info.grid);
+    status = gim_decode_geometry(file.data(), file.size(), nullptr, flags, workspace.data(), workspace.size(),
+                                 out.geometry.samples.data());
+    if (status != GIM_OK) return decoderError(status);
+    if (out.info.normal_grid > 0) {
+        out.normals = emptyImage(out.info.normal_grid);
+        status = gim_decode_normals(file.data(), file.size(), nullptr, flags, workspace.data(), workspace.size(),
+                                    out.normals.samples.data());
+        if (status != GIM_OK) return decoderError(status);
+    }
+    return out;
+}
+
+Result<Mesh> levelMesh(std::span<const uint8_t> file, const DecodedImages& images, unsigned level, unsigned flags)
+{
+    if (level >= images.info.levels)
+        return Error{ErrorKind::BadArgument, "level " + std::to_string(level) + " does not exist: the file has " +
+                                                 std::to_string(images.info.levels) + " levels, 0 the finest"};
+    std::vector<std::byte> workspace(gim_workspace_size(&images.info));
+    gim_mesh_counts counts{};
+    counts.size = sizeof counts;
+    gim_status status = gim_mesh_size(file.data(), file.size(), nullptr, flags, level, workspace.data(),
+                                      workspace.size(), &counts);
+    if (status != GIM_OK) return decoderError(status);
+    std::vector<uint32_t> sampleOfVertex(counts.vertices), triangles(size_t{3} * counts.triangles);
+    const float* xyz = images.geometry.samples.data();
+    status = gim_build_mesh(file.data(), file.size(), nullptr, flags, level, workspace.data(), workspace.size(),
+                            xyz, nullptr, sampleOfVertex.data(), triangles.data());
+    if (status != GIM_OK) return decoderError(status);
+
+    Mesh mesh;
+    mesh.positions.reserve(sampleOfVertex.size());
+    for (uint32_t sample : sampleOfVertex) {
+        const float* p = xyz + size_t{3} * sample;
+        mesh.positions.emplace_back(p[0], p[1], p[2]);
+    }
+    mesh.faces.reserve(counts.triangles);
+    for (size_t t = 0; t < counts.triangles; ++t)
+        mesh.faces.push_back({static_cast<int>(triangles[3 * t]), static_cast<int>(triangles[3 * t + 1]),
+                              static_cast<int>(triangles[3 * t + 2])});
+    return mesh;
+}
+
+} // namespace gimg

@@ -1,0 +1,216 @@
+#include "gimg/encode.h"
+
+#include "codec/encode.h"
+#include "gimg/border.h"
+#include "gimg/cut.h"
+#include "gimg/decode.h"
+#include "gimg/distance.h"
+#include "gimg/flatten.h"
+#include "gimg/sample.h"
+
+#include <tbb/global_control.h>
+
+#include <chrono>
+#include <cmath>
+#include <cstdio>
+#include <optional>
+
+namespace gimg {
+namespace {
+
+class Stopwatch
+{
+public:
+    double lap()
+    {
+        const auto now = std::chrono::steady_clock::now();
+        const double seconds = std::chrono::duration<double>(now - last_).count();
+        last_ = now;
+        return seconds;
+    }
+
+private:
+    std::chrono::steady_clock::time_point last_ = std::chrono::steady_clock::now();
+};
+
+std::string decibels(double psnr)
+{
+    char text[32];
+    std::snprintf(text, sizeof text, "%.2f dB", psnr);
+    return text;
+}
+
+Error fromCodec(const codec::EncodeError& error)
+{
+    using Kind = codec::EncodeError::Kind;
+    const bool target = error.kind == Kind::TooSmall || error.kind == Kind::TooLarge;
+    return {target ? ErrorKind::TargetUnreachable : ErrorKind::BadArgument, error.message};
+}
+
+Result<std::vector<uint8_t>> fileOf(codec::Outcome<codec::EncodedFile> outcome)
+{
+    if (auto* error = std::get_if<codec::EncodeError>(&outcome)) return fromCodec(*error);
+    return std::move(std::get<codec::EncodedFile>(outcome).bytes);
+}
+
+Result<double> decodedPsnr(const std::vector<uint8_t>& file, const SurfaceMeasure& measure)
+{
+    const Result<DecodedImages> images = decodeImages(file);
+    if (!images) return images.error();
+    const Result<Mesh> mesh = levelMesh(file, *images, 0);
+    if (!mesh) return mesh.error();
+    const Result<SurfaceDistance> distance = measure.against(*mesh);
+    if (!distance) return distance.error();
+    return distance->psnr();
+}
+
+// Normals are judged by eye, not by distance: their step is the same at any quality of the surface.
+constexpr float kNormalStep = 1.0f / 32;
+
+// Searches the coarsest step that reaches the target: bisection on its logarithm, since the quality falls by
+// about 6 dB when the step doubles.
+class PsnrSearch
+{
+public:
+    PsnrSearch(const codec::Encoder& encoder, const SurfaceMeasure& measure, const EncodeOptions& options)
+        : encoder_(encoder), measure_(measure), options_(options)
+    {
+    }
+
+    Result<std::vector<uint8_t>> run()
+    {
+        constexpr double kFinest = 0x1p-22, kWindow = 0.5, kGoodEnough = 0.1;
+        constexpr int kMostSteps = 24;
+        double fine = std::log(kFinest), coarse = std::log(0.25);
+        const Result<Trial> best = attempt(fine);
+        if (!best) return best.error();
+        if (best->psnr < options_.psnr)
+            return Error{ErrorKind::TargetUnreachable,
+                         decibels(options_.psnr) + " cannot be reached: this grid holds the surface to " +
+                             decibels(best->psnr) + "; use a larger --grid"};
+        Trial kept = *best;
+        for (int i = 0; i < kMostSteps && kept.psnr > options_.psnr + kGoodEnough; ++i) {
+            const double middle = i == 0 ? firstGuess() : 0.5 * (fine + coarse);
+            Result<Trial> trial = attempt(middle);
+            if (!trial) return trial.error();
+            if (options_.progress) options_.progress("code", (i + 1.0) / kMostSteps);
+            if (trial->psnr >= options_.psnr) {
+                fine = middle;
+                kept = std::move(*trial);
+            } else {
+                coarse = middle;
+            }
+        }
+        if (kept.psnr > options_.psnr + kWindow)
+            return Error{ErrorKind::TargetUnreachable, "no file is within 0.5 dB of " + decibels(options_.psnr) +
+                                                           "; the nearest above has " + decibels(kept.psnr)};
+        return std::move(kept.file);
+    }
+
+private:
+    struct Trial
+    {
+        std::vector<uint8_t> file;
+        double psnr;
+    };
+
+    // With a uniform quantiser the error is near a third of the step.
+    double firstGuess() const { return std::log(3.0) - options_.psnr / 20 * std::log(10.0); }
+
+    Result<Trial> attempt(double logStep)
+    {
+        codec::Settings settings;
+        settings.step = static_cast<float>(std::exp(logStep) * encoder_.diagonal());
+        settings.normalStep = kNormalStep;
+        Result<std::vector<uint8_t>> file = fileOf(encoder_.encode(settings));
+        if (!file) return file.error();
+        const Result<double> psnr = decodedPsnr(*file, measure_);
+        if (!psnr) return psnr.error();
+        return Trial{std::move(*file), *psnr};
+    }
+
+    const codec::Encoder& encoder_;
+    const SurfaceMeasure& measure_;
+    const EncodeOptions& options_;
+};
+
+Result<std::vector<uint8_t>> code(const codec::Encoder& encoder, const SurfaceMeasure& measure,
+                                  const EncodeOptions& options)
+{
+    codec::Settings settings;
+    switch (options.target) {
+    case EncodeTarget::Bytes: return fileOf(encoder.encodeToBytes(options.bytes));
+    case EncodeTarget::Psnr: return PsnrSearch(encoder, measure, options).run();
+    case EncodeTarget::Raw12: settings.coding = GIM_CODING_RAW12; break;
+    case EncodeTarget::RawFloat: settings.coding = GIM_CODING_FLOAT; break;
+    }
+    return fileOf(encoder.encode(settings));
+}
+
+} // namespace
+
+Result<EncodedMesh> encodeMesh(const Mesh& mesh, const EncodeOptions& options)
+{
+    if (options.threads < 0) return Error{ErrorKind::BadArgument, "the number of threads is negative"};
+    std::optional<tbb::global_control> threads;
+    if (options.threads > 0)
+        threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(options.threads));
+    const auto stage = [&](const char* name, double fraction) {
+        if (options.progress) options.progress(name, fraction);
+    };
+
+    EncodedMesh out;
+    Stopwatch watch;
+    out.topology = topology(mesh);
+
+    stage("cut", 0);
+    const CutGraph cut = cutToDisk(mesh);
+    out.cutNodes = cut.nodeCount();
+    out.cutPaths = static_cast<int>(cut.paths.size());
+    out.cutLength = cutLength(mesh, cut);
+    Result<SquareDisk> square = layOutBorder(mesh, cut, {options.grid, options.lowest});
+    if (!square) return square.error();
+    out.grid = square->grid;
+    out.lowest = square->lowest;
+    if (options.grid == 0 && options.lowest == 0 && out.grid > BorderOptions::kDefaultGrid)
+        out.warnings.push_back("the cut has " + std::to_string(out.cutPaths) + " paths: the grid grew to " +
+                               std::to_string(out.grid) + " samples a side");
+    out.seconds.cut = watch.lap();
+
+    stage("parameterize", 0);
+    const Result<Parameterization> map =
+        flattenToSquare(*square, [&](double fraction) { stage("parameterize", fraction); });
+    if (!map) return map.error();
+    out.stretchEfficiency = map->efficiency;
+    out.seconds.parameterize = watch.lap();
+
+    stage("sample", 0);
+    const Result<FloatImage> geometry = sampleGeometry(*square, *map, square->grid);
+    if (!geometry) return geometry.error();
+    Result<FloatImage> normals = FloatImage{};
+    if (options.normals != 0) normals = sampleNormals(*square, *map, options.normals);
+    if (!normals) return normals.error();
+    out.normals = options.normals;
+    out.seconds.sample = watch.lap();
+
+    stage("code", 0);
+    codec::Source source;
+    source.grid = static_cast<uint32_t>(square->grid);
+    source.seam = {static_cast<uint32_t>(square->lowest), static_cast<uint32_t>(square->start), square->seam()};
+    source.xyz = geometry->samples;
+    source.normalGrid = static_cast<uint32_t>(options.normals);
+    source.normals = normals->samples;
+    auto prepared = codec::Encoder::prepare(source);
+    if (auto* error = std::get_if<codec::EncodeError>(&prepared)) return fromCodec(*error);
+    const SurfaceMeasure measure(mesh);
+    Result<std::vector<uint8_t>> file = code(std::get<codec::Encoder>(prepared), measure, options);
+    if (!file) return file.error();
+    out.file = std::move(*file);
+    const Result<double> psnr = decodedPsnr(out.file, measure);
+    if (!psnr) return psnr.error();
+    out.psnr = *psnr;
+    out.seconds.code = watch.lap();
+    return out;
+}
+
+} // namespace gimg

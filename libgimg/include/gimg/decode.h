@@ -1,0 +1,33 @@
+#pragma once
+
+#include "gimg/image_io.h"
+#include "gimg/mesh.h"
+#include "gimg/result.h"
+
+#include <gim.h>
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+namespace gimg {
+
+/// A .gim file's samples. The C functions of gim.h do the same without allocating.
+struct DecodedImages
+{
+    gim_info info;
+    FloatImage geometry;
+    FloatImage normals; ///< empty if the file has none
+};
+
+/// @param flags  GIM_NO_FUSE, GIM_NO_DIFFUSE, or 0
+/// Errors: FileTruncated, FileCorrupt, CodecFailure (a version or size this library does not take).
+Result<DecodedImages> decodeImages(std::span<const uint8_t> file, unsigned flags = 0);
+
+/// The mesh of a level of detail: one vertex for each class of glued samples.
+/// @param level  0 is the finest; each step halves the grid; below info.levels
+/// Errors: as decodeImages; BadArgument for a level that the file does not have.
+Result<Mesh> levelMesh(std::span<const uint8_t> file, const DecodedImages& images, unsigned level,
+                       unsigned flags = 0);
+
+} // namespace gimg

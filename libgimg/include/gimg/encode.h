@@ -1,0 +1,62 @@
+#pragma once
+
+#include "gimg/mesh.h"
+#include "gimg/result.h"
+
+#include <cstddef>
+#include <cstdint>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace gimg {
+
+/// What a file is made for.
+enum class EncodeTarget
+{
+    Bytes,    ///< lossy, at most EncodeOptions::bytes
+    Psnr,     ///< lossy, at least EncodeOptions::psnr and at most 0.5 dB more
+    Raw12,    ///< 12-bit integers
+    RawFloat, ///< float32 samples without loss
+};
+
+struct EncodeOptions
+{
+    EncodeTarget target = EncodeTarget::Bytes;
+    size_t bytes = 12000; ///< size of the whole file
+    double psnr = 70;     ///< surface PSNR in dB, see SurfaceDistance::psnr
+    int grid = 0;         ///< samples a side, 2^j + 1; 0 chooses, see BorderOptions
+    int lowest = 0;       ///< lowest level of detail; 0 chooses
+    int normals = 0;      ///< samples a side of the normal image, 2^j + 1; 0: none
+    int threads = 0;      ///< 0: one a core. The file does not depend on it.
+    /// Called with the name of the stage and the fraction of it that is done.
+    std::function<void(const char* stage, double fraction)> progress;
+};
+
+struct EncodeSeconds
+{
+    double cut = 0, parameterize = 0, sample = 0, code = 0;
+};
+
+struct EncodedMesh
+{
+    std::vector<uint8_t> file;
+    Topology topology; ///< of the input
+    int grid = 0;
+    int lowest = 0;
+    int normals = 0;
+    double psnr = 0;              ///< of the decoded finest level against the input; infinite if they agree
+    double stretchEfficiency = 0; ///< see stretchEfficiency()
+    int cutNodes = 0;
+    int cutPaths = 0;
+    double cutLength = 0; ///< on the surface, in the mesh's unit
+    EncodeSeconds seconds;
+    std::vector<std::string> warnings;
+};
+
+/// The whole road: cut, layout, flattening, sampling, coding.
+/// @param mesh  connected, manifold, oriented (see readMesh)
+/// Errors: BadArgument; TargetUnreachable (says what can be reached); those of the stages.
+Result<EncodedMesh> encodeMesh(const Mesh& mesh, const EncodeOptions& options);
+
+} // namespace gimg
