@@ -72,7 +72,8 @@ Topology seamTopology(const SeamView& seam, std::uint32_t* scratch)
     for (std::uint32_t s = 0; s < count; ++s) {
         if (!isBoundary(s) || visited[s] != 0) continue;
         ++topology.loops;
-        for (std::uint32_t side = s; visited[side] == 0;) {
+        std::uint32_t side = s;
+        do {
             ++topology.cutNodes;
             std::uint32_t corner = after(side);
             while (!isBoundary(corner)) {
@@ -81,7 +82,7 @@ Topology seamTopology(const SeamView& seam, std::uint32_t* scratch)
             }
             visited[corner] = 1;
             side = corner;
-        }
+        } while (side != s);
     }
     // The corners left over turn full circles about interior cut-nodes.
     for (std::uint32_t s = 0; s < count; ++s) {
