@@ -236,7 +236,7 @@ Mesh plate(int holes, int n)
             const int side = k % (4 * n) / n, step = k % n;
             const std::array<std::array<int, 2>, 4> square{
                 {{step, 0}, {n, step}, {n - step, n}, {0, n - step}}};
-            const auto [x, y] = square[side];
+            const int x = square[side][0], y = square[side][1];
             if (ring == rings) return onLattice(hole * n + x, y);
             return lattice.vertex(mesh, {hole, ring * 4 * n + k % (4 * n), 1}, [=] {
                 const Vec3 center(2 * hole + 1, 1, 0);

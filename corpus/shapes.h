@@ -40,8 +40,8 @@ Mesh disk(double radius, int n);
 /// @param n  segments along the side of a square, >= 1
 Mesh plate(int holes, int n);
 
-/// Smooth surface of any genus with any small number of openings: the boundary of a ladder of `genus` rungs'
-/// gaps, a level set of a Gaussian convolved with the ladder's edges. Lies within |z| < 1.
+/// Smooth surface of any genus with openings where wanted. It follows a flat ladder with `genus` gaps between
+/// its rungs: a level set of a Gaussian convolved with the ladder's bars. Lies within |z| < 1.
 /// @param genus  >= 0
 /// @param loops  openings, at most 4 (genus + 1); the same openings at every n
 /// @param n      segments along the side of a ladder cell, >= 1; 2 n^2 faces a cell side

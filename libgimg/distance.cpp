@@ -2,6 +2,7 @@
 
 #include <embree3/rtcore.h>
 #include <tbb/blocked_range.h>
+#include <tbb/info.h>
 #include <tbb/parallel_for.h>
 #include <tbb/task_arena.h>
 
@@ -250,7 +251,8 @@ OneSided distances(const Surface& from, const Surface& to, const DistanceOptions
 {
     const std::vector<Vec3>& points = from.points();
     std::vector<double> distance(points.size());
-    tbb::task_arena arena(options.threads > 0 ? options.threads : tbb::task_arena::automatic);
+    const int cores = tbb::info::default_concurrency();
+    tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
     arena.execute([&] {
         tbb::parallel_for(tbb::blocked_range<size_t>(0, points.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
             // Points follow the faces, so the face nearest to one is near the next; the distance is the same from any.

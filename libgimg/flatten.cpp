@@ -107,6 +107,19 @@ private:
     std::vector<std::pair<Vec2, Vec2>> edges_; // outer edge of each triangle
 };
 
+// Moves every vertex of the current mesh by itself. Newton's global step is no longer than the worst sliver
+// allows; this frees the slivers first.
+void sweepVertices(const Mesh& disk, const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides,
+                   std::vector<Vec2>& st)
+{
+    constexpr int kSweeps = 2;
+    std::vector<int> vertexOf;
+    hierarchy.current(vertexOf);
+    for (int sweep = 0; sweep < kSweeps; ++sweep)
+        for (int v : vertexOf)
+            if (squareSides[v] == 0) Star(disk, hierarchy.star(v), st).descend(st[v]);
+}
+
 // Lowers the stretch of the hierarchy's current mesh; positions stay indexed by the disk's vertices.
 void relaxLevel(const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides, std::vector<Vec2>& st,
                 const DescentOptions& options)
@@ -167,6 +180,7 @@ Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progres
                              "no room left in the plane for surface vertex " + std::to_string(square.disk.origin[v])};
             star.descend(result.st[v]);
         }
+        sweepVertices(disk, hierarchy, square.squareSides, result.st);
         relaxLevel(hierarchy, square.squareSides, result.st, {hierarchy.isFull() ? 12 : 30, 1e-3});
         if (progress) progress(0.1 + 0.9 * hierarchy.interiorCount() / std::max(1, interior));
     }

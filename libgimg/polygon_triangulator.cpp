@@ -7,8 +7,11 @@ namespace gimg {
 
 namespace {
 
-constexpr int kLargestProgrammed = 64;         // the table takes n^2 cells and n^3 / 6 steps
-constexpr int64_t kEarTests = int64_t{1} << 26; // then the rest is fanned: no polygon may take minutes
+constexpr int kLargestProgrammed = 32; // the table takes n^2 cells and n^3 / 6 steps
+
+// Past these numbers of point tests ears are cut unseen: no file may take minutes.
+constexpr int64_t kPolygonTests = int64_t{1} << 23;
+constexpr int64_t kAllTests = int64_t{1} << 26;
 
 uint64_t edgeKey(int a, int b)
 {
@@ -122,20 +125,23 @@ void PolygonTriangulator::clipEars(std::vector<Triangle>& triangles)
         normal += (soup_.positions[ring_[k]] - origin).cross(soup_.positions[ring_[k + 1]] - origin);
     int drop = 0;
     normal.cwiseAbs().maxCoeff(&drop);
-    const int x = (drop + 1) % 3, y = (drop + 2) % 3;
-    const double sign = normal[drop] < 0 ? -1.0 : 1.0;
-    const auto turn = [&](int a, int b, int c) {
-        const Vec3 &p = soup_.positions[a], &q = soup_.positions[b], &r = soup_.positions[c];
-        return sign * ((q[x] - p[x]) * (r[y] - p[y]) - (q[y] - p[y]) * (r[x] - p[x]));
+    const int n = static_cast<int>(ring_.size());
+    std::vector<Vec2> flat;
+    for (int v : ring_) {
+        const Vec3& p = soup_.positions[v];
+        flat.emplace_back(p[(drop + 1) % 3], normal[drop] < 0 ? -p[(drop + 2) % 3] : p[(drop + 2) % 3]);
+    }
+    const auto turn = [&flat](int i, int j, int k) { // twice the area of the corners i, j, k
+        const Vec2 a = flat[j] - flat[i], b = flat[k] - flat[i];
+        return a[0] * b[1] - a[1] * b[0];
     };
 
-    const int n = static_cast<int>(ring_.size());
     std::vector<int> next(ring_.size()), prev(ring_.size());
     for (int i = 0; i < n; ++i) {
         next[i] = (i + 1) % n;
         prev[i] = (i + n - 1) % n;
     }
-    const auto reflex = [&](int i) { return !(turn(ring_[prev[i]], ring_[i], ring_[next[i]]) > 0); };
+    const auto reflex = [&](int i) { return !(turn(prev[i], i, next[i]) > 0); };
     std::vector<int> reflexCorners; // only these can lie inside an ear; clipping makes no new ones
     for (int i = 0; i < n; ++i)
         if (reflex(i)) reflexCorners.push_back(i);
@@ -143,21 +149,21 @@ void PolygonTriangulator::clipEars(std::vector<Triangle>& triangles)
 
     int64_t tests = 0;
     const auto isEar = [&](int i) {
-        const int a = ring_[prev[i]], b = ring_[i], c = ring_[next[i]];
-        if (reflex(i) || isEdge(a, c)) return false;
+        const int a = prev[i], c = next[i];
+        ++tests;
+        if (reflex(i) || isEdge(ring_[a], ring_[c])) return false;
         for (int r : reflexCorners) {
-            const int v = ring_[r];
-            if (clipped[r] || v == a || v == b || v == c) continue;
             ++tests;
-            if (turn(a, b, v) >= 0 && turn(b, c, v) >= 0 && turn(c, a, v) >= 0) return false;
+            if (clipped[r] || turn(a, i, r) < 0 || turn(i, c, r) < 0 || turn(c, a, r) < 0) continue;
+            if (ring_[r] != ring_[a] && ring_[r] != ring_[i] && ring_[r] != ring_[c]) return false;
         }
         return true;
     };
     int left = n;
     int misses = 0;
     for (int i = 0; left > 3;) {
-        // Where no ear is left (the projection crosses itself) or the budget is spent, any corner will do.
-        if (misses > left || tests > kEarTests || isEar(i)) {
+        // Where no ear is left (the projection crosses itself) any corner will do.
+        if (misses > left || tests > kPolygonTests || tests_ > kAllTests || isEar(i)) {
             triangles.push_back({ring_[prev[i]], ring_[i], ring_[next[i]]});
             diagonals_.insert(edgeKey(ring_[prev[i]], ring_[next[i]]));
             clipped[i] = true;
@@ -172,6 +178,7 @@ void PolygonTriangulator::clipEars(std::vector<Triangle>& triangles)
         }
         if (left == 3) triangles.push_back({ring_[prev[i]], ring_[i], ring_[next[i]]});
     }
+    tests_ += tests;
 }
 
 } // namespace gimg

@@ -10,7 +10,7 @@ namespace gimg {
 /// Cuts polygons into triangles that use each polygon edge once and no other boundary: warped polygons get the
 /// triangulation of least area, flat ones the shortest diagonals, so none leaves a non-convex polygon where that can
 /// be helped; and no diagonal doubles an edge of the mesh where that can be helped.
-/// Source: dynamic programming as in Barequet and Sharir 1995; ear clipping for polygons above 64 corners.
+/// Source: dynamic programming as in Barequet and Sharir 1995; ear clipping for polygons above 32 corners.
 class PolygonTriangulator
 {
 public:
@@ -29,6 +29,7 @@ private:
     std::vector<int> ring_;
     std::vector<uint64_t> edges_; ///< of the soup's polygons, sorted; empty where all are triangles
     std::unordered_set<uint64_t> diagonals_;
+    int64_t tests_ = 0; ///< of points against ears, so far
 };
 
 } // namespace gimg

@@ -197,9 +197,10 @@ private:
 double stretchEnergy(const Mesh& mesh, const std::vector<Vec2>& st)
 {
     double energy = 0;
-    for (const Triangle& f : mesh.faces)
-        energy += StretchElement(mesh.positions[f[0]], mesh.positions[f[1]], mesh.positions[f[2]])
-                      .energy({st[f[0]], st[f[1]], st[f[2]]});
+    for (const Triangle& f : mesh.faces) {
+        const StretchElement element(mesh.positions[f[0]], mesh.positions[f[1]], mesh.positions[f[2]]);
+        energy += element.area() * element.squaredStretch({st[f[0]], st[f[1]], st[f[2]]});
+    }
     return energy;
 }
 

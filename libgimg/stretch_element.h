@@ -36,31 +36,42 @@ inline double firstCollapse(const std::array<Vec2, 3>& p, const std::array<Vec2,
     return first;
 }
 
-/// The stretch energy of one triangle: E = W N / a^2, where a is twice its area in the plane,
-/// N = s'Gs + t'Gt with G the Gram matrix of the surface triangle's edges (edge k opposite corner k), and
-/// W half the surface area. Unknowns are ordered s0 s1 s2 t0 t1 t2.
+/// The stretch of one triangle. L2(T)^2 = N / (2 a^2), where a is twice its area in the plane and
+/// N = s'Gs + t'Gt with G the Gram matrix of the surface triangle's edges (edge k opposite corner k).
+/// Descent lowers A(T) L2(T)^4: linear interpolation errs by the square of the spacing, so its mean square goes
+/// with the fourth power of the stretch. Unknowns are ordered s0 s1 s2 t0 t1 t2.
 class StretchElement
 {
 public:
     StretchElement(const Vec3& q0, const Vec3& q1, const Vec3& q2)
-        : weight_(0.25 * (q1 - q0).cross(q2 - q0).norm())
+        : area_(0.5 * (q1 - q0).cross(q2 - q0).norm())
     {
         const Vec3 edge[3] = {q2 - q1, q0 - q2, q1 - q0};
         for (int i = 0; i < 3; ++i)
             for (int j = 0; j < 3; ++j) gram_(i, j) = edge[i].dot(edge[j]);
     }
 
-    double energy(const std::array<Vec2, 3>& p) const
+    double area() const { return area_; }
+
+    /// L2(T)^2; infinite for a flipped or degenerate triangle.
+    double squaredStretch(const std::array<Vec2, 3>& p) const
     {
         const double a = doubleArea(p);
         if (!(a > 0)) return std::numeric_limits<double>::infinity();
-        return weight_ * numerator(p) / (a * a);
+        return numerator(p) / (2 * a * a);
+    }
+
+    /// A(T) L2(T)^4
+    double energy(const std::array<Vec2, 3>& p) const
+    {
+        const double stretch = squaredStretch(p);
+        return area_ * stretch * stretch;
     }
 
     struct Derivatives
     {
         Eigen::Matrix<double, 6, 1> gradient;
-        Eigen::Matrix<double, 6, 6> hessian; ///< positive semi-definite majorant of the Hessian
+        Eigen::Matrix<double, 6, 6> hessian; ///< positive semi-definite, close to the Hessian
     };
 
     Derivatives derivatives(const std::array<Vec2, 3>& p) const
@@ -72,26 +83,25 @@ public:
         gradA << t[1] - t[2], t[2] - t[0], t[0] - t[1], s[2] - s[1], s[0] - s[2], s[1] - s[0];
         const double a2 = a * a, a3 = a2 * a;
 
-        Derivatives d;
-        d.gradient = weight_ * (gradN / a2 - (2 * n / a3) * gradA);
-        // The exact Hessian is 2(G+G)/a^2 - 2(dN da' + da dN')/a^3 + 6N da da'/a^4 - 2N d2a/a^3. With 8 for 6
-        // the first three terms are a square; of the last only the positive part is kept: d2a has the
-        // eigenvalues +-sqrt(3) off the constants.
-        d.hessian = -2 / a3 * (gradN * gradA.transpose() + gradA * gradN.transpose()) +
-                    (8 * n / (a2 * a2)) * (gradA * gradA.transpose());
-        d.hessian.topLeftCorner<3, 3>() += 2 / a2 * gram_;
-        d.hessian.bottomRightCorner<3, 3>() += 2 / a2 * gram_;
+        // With f = N / a^2 the exact Hessian is 2(G+G)/a^2 - 2(dN da' + da dN')/a^3 + 6N da da'/a^4 - 2N d2a/a^3.
+        // With 8 for 6 the first three terms are a square; of the last only the positive part is kept: d2a has
+        // the eigenvalues +-sqrt(3) off the constants.
+        const Eigen::Matrix<double, 6, 1> gradF = gradN / a2 - (2 * n / a3) * gradA;
+        Eigen::Matrix<double, 6, 6> hessF = -2 / a3 * (gradN * gradA.transpose() + gradA * gradN.transpose()) +
+                                            (8 * n / (a2 * a2)) * (gradA * gradA.transpose());
         Eigen::Matrix3d centred = Eigen::Matrix3d::Constant(-1.0 / 3);
         centred.diagonal().array() += 1;
         Eigen::Matrix3d b;
         b << 0, 1, -1, -1, 0, 1, 1, -1, 0;
-        const double c = n / a3;
-        d.hessian.topLeftCorner<3, 3>() += c * std::sqrt(3.0) * centred;
-        d.hessian.bottomRightCorner<3, 3>() += c * std::sqrt(3.0) * centred;
-        d.hessian.topRightCorner<3, 3>() -= c * b;
-        d.hessian.bottomLeftCorner<3, 3>() -= c * b.transpose();
-        d.hessian *= weight_;
-        return d;
+        const Eigen::Matrix3d diagonal = 2 / a2 * gram_ + (n / a3 * std::sqrt(3.0)) * centred;
+        hessF.topLeftCorner<3, 3>() += diagonal;
+        hessF.bottomRightCorner<3, 3>() += diagonal;
+        hessF.topRightCorner<3, 3>() -= n / a3 * b;
+        hessF.bottomLeftCorner<3, 3>() -= n / a3 * b.transpose();
+
+        // E = A/4 f^2
+        const double f = n / a2;
+        return {0.5 * area_ * f * gradF, 0.5 * area_ * (gradF * gradF.transpose() + f * hessF)};
     }
 
 private:
@@ -109,7 +119,7 @@ private:
     }
 
     Eigen::Matrix3d gram_;
-    double weight_;
+    double area_;
 };
 
 } // namespace gimg

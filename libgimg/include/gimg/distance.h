@@ -12,7 +12,7 @@ struct DistanceOptions
 {
     int samples = 200000; ///< on each surface, spread evenly over its area
     uint64_t seed = 1;    ///< same seed, same samples
-    int threads = 0;      ///< 0: one a core. The numbers do not depend on it.
+    int threads = 0;      ///< at most one a core; 0: as many. The numbers do not depend on it.
 };
 
 /// How far two surfaces are apart, in the unit of the coordinates. Distances are from points of one surface to the
