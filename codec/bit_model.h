@@ -31,7 +31,7 @@ struct BitModel
     static constexpr unsigned kSlowShift = 7;
     static constexpr unsigned kSeenCap = 126; // log2Floor(126 + 2) = kSlowShift
 
-    /// In [35, 32733]: the shifts keep the estimates away from 0 and 2^16.
+    /// In [19, 32748]: the shifts keep the estimates away from 0 and 2^16.
     std::uint32_t zero() const { return (std::uint32_t{quick} + slow) >> 2; }
 
     void update(bool bit)

@@ -1,9 +1,9 @@
 #include "encode.h"
 
 #include "border.h"
-#include "container.h"
+#include "format/container.h"
 #include "image_header.h"
-#include "writer.h"
+#include "format/writer.h"
 
 #include <algorithm>
 #include <cmath>
@@ -19,6 +19,7 @@ using Bytes = std::vector<std::uint8_t>;
 /// Steps finer than this part of the diagonal spend bytes on the noise of float32 samples.
 constexpr double kFinestPart = 0x1p-21;
 constexpr double kNormalShare = 0.25;
+constexpr double kLargestCoefficient = static_cast<double>(kLargestStep) / 4;
 
 EncodeError badSource(std::string message) { return {EncodeError::Kind::BadSource, std::move(message), 0}; }
 
@@ -58,7 +59,7 @@ Bytes waveletContent(const TransformedImage& image, float step)
 
 struct Raw12
 {
-    Bytes content;
+    Bytes content; ///< empty if the samples are too far apart
     float step = 0;
 };
 
@@ -75,7 +76,8 @@ Raw12 raw12Content(std::span<const float> samples, std::uint32_t grid)
     for (unsigned c = 0; c < kComponents; ++c)
         side = std::max(side, static_cast<double>(most[c]) - static_cast<double>(least[c]));
     Raw12 out;
-    out.step = std::clamp(static_cast<float>(side / 4095), kSmallestStep, kLargestStep);
+    out.step = std::max(static_cast<float>(side / 4095), kSmallestStep);
+    if (out.step > kLargestStep) return {};
     out.content = imageContent(grid, GIM_CODING_RAW12);
     for (const float value : least) format::appendF32(out.content, value);
     format::appendF32(out.content, out.step);
@@ -138,6 +140,7 @@ struct Candidate
 
 std::string stepFault(const TransformedImage& image, float step, const char* name)
 {
+    if (image.largest > kLargestCoefficient) return "the samples are too large for wavelet coding";
     if (!(step > 0) || step > kLargestStep) return std::string(name) + " is not a positive number in range";
     if (step < smallestStep(image)) return std::string(name) + " is too small for these samples";
     return {};
@@ -165,6 +168,8 @@ std::variant<Candidate, EncodeError> searchStep(const TransformedImage& image, s
     const auto attempt = [&](float step) { return Candidate{waveletContent(image, step), step}; };
     const auto sizeOf = [](const Candidate& candidate) { return format::chunkSize(candidate.content.size()); };
     const StepRange range = sensibleSteps(image);
+    if (image.largest > kLargestCoefficient)
+        return EncodeError{EncodeError::Kind::BadSettings, "the samples are too large for wavelet coding", 0};
 
     Candidate best = attempt(range.coarsest);
     std::size_t bestSize = sizeOf(best);
@@ -234,7 +239,6 @@ Outcome<Encoder> Encoder::prepare(const Source& source)
     encoder.word_ = encodeSeam(source.seam);
     encoder.xyz_.assign(source.xyz.begin(), source.xyz.end());
     encoder.geometry_ = transform(source.xyz, source.grid);
-    if (encoder.geometry_.largest > static_cast<double>(kLargestStep) / 4) return badSource("geometry: the coordinates are too large");
     if (source.normalGrid != 0) {
         if (std::string fault = imageFault("normals", source.normals, source.normalGrid, source.seam.lowest); !fault.empty())
             return badSource(fault);
@@ -263,6 +267,8 @@ Outcome<EncodedFile> Encoder::encode(const Settings& settings) const
         }
         case GIM_CODING_RAW12: {
             Raw12 raw = raw12Content(*samples[k], images[k]->grid);
+            if (raw.content.empty())
+                return EncodeError{EncodeError::Kind::BadSettings, "the samples are too large for 12-bit coding", 0};
             content[k] = std::move(raw.content);
             written[k] = raw.step;
             break;
@@ -281,6 +287,7 @@ Outcome<EncodedFile> Encoder::encodeToBytes(std::size_t target) const
 {
     const std::size_t fixed = format::kHeaderSize + format::chunkSize(1 + word_.size());
     const auto unreachable = [&](EncodeError error, std::size_t others) {
+        if (error.kind == EncodeError::Kind::BadSettings) return error;
         error.reachable += fixed + others;
         error.message = std::string("the ") +
                         (error.kind == EncodeError::Kind::TooSmall ? "smallest" : "largest sensible") +

@@ -21,7 +21,6 @@ constexpr double kEmptyBelow = 0.6;
 class BitCounter
 {
 public:
-    static constexpr bool kDecodes = false;
     static constexpr bool kAdapts = false;
 
     bool bit(BitModel& model, bool one) { return code(model.zero(), one); }

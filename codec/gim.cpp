@@ -2,7 +2,7 @@
 
 #include "arena.h"
 #include "border.h"
-#include "container.h"
+#include "format/container.h"
 #include "image_header.h"
 #include "range_decoder.h"
 #include "seam_code.h"
@@ -81,7 +81,7 @@ std::uint64_t workspaceOf(const File& file)
 
 ReadStatus openFile(const void* bytes, std::size_t size, const gim_limits* limits, File* file)
 {
-    if (bytes == nullptr || !readLimits(limits, &file->limits)) return ReadStatus::Misuse;
+    if ((bytes == nullptr && size > 0) || !readLimits(limits, &file->limits)) return ReadStatus::Misuse;
     ReadStatus status = readContents({static_cast<const std::uint8_t*>(bytes), size}, &file->contents);
     if (status != ReadStatus::Ok) return status;
 
@@ -227,7 +227,7 @@ size_t gim_workspace_size(const gim_info* info)
 
 gim_status gim_read_chunk(const void* bytes, size_t size, uint32_t index, gim_chunk* chunk)
 {
-    if (bytes == nullptr || chunk == nullptr || chunk->size < sizeof(gim_chunk)) return GIM_MISUSE;
+    if ((bytes == nullptr && size > 0) || chunk == nullptr || chunk->size < sizeof(gim_chunk)) return GIM_MISUSE;
     ChunkWalk walk({static_cast<const std::uint8_t*>(bytes), size});
     ReadStatus status = walk.open();
     if (status != ReadStatus::Ok) return toPublic(status);

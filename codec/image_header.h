@@ -1,6 +1,6 @@
 #pragma once
 
-#include "bytes.h"
+#include "format/bytes.h"
 #include "gim.h"
 #include "quantizer.h"
 

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "bit_model.h"
-#include "bytes.h"
+#include "format/bytes.h"
 
 namespace gimg::codec {
 

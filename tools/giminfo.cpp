@@ -1,0 +1,183 @@
+// giminfo: what a .gim file holds.
+#include "cli.h"
+
+#include <gim.h>
+
+#include <iomanip>
+#include <sstream>
+
+namespace {
+
+using namespace gimg;
+
+const char* nameOf(gim_coding coding)
+{
+    switch (coding) {
+    case GIM_CODING_WAVELET: return "wavelet";
+    case GIM_CODING_RAW12: return "raw12";
+    case GIM_CODING_FLOAT: return "float";
+    }
+    return "unknown";
+}
+
+const char* contentOf(char type)
+{
+    switch (type) {
+    case 'S': return "seam";
+    case 'G': return "geometry";
+    case 'n': return "normals";
+    default: return "unknown, skipped";
+    }
+}
+
+// a, b, .. z, aa, ab ..; a piece of the surface's own boundary gets capitals.
+std::string labelOf(const gim_side& side)
+{
+    std::string label;
+    const char base = side.kind == GIM_SIDE_BOUNDARY ? 'A' : 'a';
+    for (uint32_t k = side.path + 1; k > 0; k = (k - 1) / 26)
+        label.insert(label.begin(), static_cast<char>(base + static_cast<char>((k - 1) % 26)));
+    return label;
+}
+
+struct Summary
+{
+    gim_info info{};
+    gim_seam seam{};
+    std::vector<gim_side> sides;
+    std::vector<gim_chunk> chunks;
+
+    std::string word() const
+    {
+        std::string text;
+        for (const gim_side& side : sides) {
+            if (!text.empty()) text += ' ';
+            text += labelOf(side) + (side.kind == GIM_SIDE_MATE ? "'" : "");
+        }
+        return text;
+    }
+};
+
+gim_status summarize(const std::vector<uint8_t>& file, Summary& summary)
+{
+    summary.info.size = sizeof summary.info;
+    gim_status status = gim_probe(file.data(), file.size(), nullptr, &summary.info);
+    if (status != GIM_OK) return status;
+    for (uint32_t k = 0; k < summary.info.chunks; ++k) {
+        gim_chunk chunk{};
+        chunk.size = sizeof chunk;
+        status = gim_read_chunk(file.data(), file.size(), k, &chunk);
+        if (status != GIM_OK) return status;
+        summary.chunks.push_back(chunk);
+    }
+    std::vector<unsigned char> work(gim_workspace_size(&summary.info));
+    summary.seam.size = sizeof summary.seam;
+    summary.sides.resize(4 * (std::size_t{summary.info.lowest} - 1));
+    status = gim_read_seam(file.data(), file.size(), nullptr, work.data(), work.size(), &summary.seam,
+                           summary.sides.data(), static_cast<uint32_t>(summary.sides.size()));
+    if (status != GIM_OK) return status;
+    summary.sides.resize(summary.seam.sides);
+    return GIM_OK;
+}
+
+nlohmann::ordered_json imageJson(uint32_t grid, gim_coding coding, float step, uint64_t bytes)
+{
+    nlohmann::ordered_json json;
+    json["grid"] = grid;
+    json["coding"] = nameOf(coding);
+    if (coding != GIM_CODING_FLOAT) json["step"] = step;
+    json["bytes"] = bytes;
+    return json;
+}
+
+nlohmann::ordered_json jsonOf(const Summary& s, std::size_t bytes)
+{
+    nlohmann::ordered_json json;
+    json["version"] = s.info.version;
+    json["grid"] = s.info.grid;
+    json["lowest"] = s.info.lowest;
+    json["levels"] = s.info.levels;
+    json["genus"] = s.seam.genus;
+    json["boundaries"] = s.seam.boundary_loops;
+    json["bytes"] = {{"total", bytes},
+                     {"container", s.info.container_bytes},
+                     {"sideband", s.info.seam_bytes},
+                     {"geometry", s.info.geometry_bytes},
+                     {"normals", s.info.normal_bytes},
+                     {"other", s.info.other_bytes}};
+    json["geometry"] = imageJson(s.info.grid, s.info.coding, s.info.step, s.info.geometry_bytes);
+    json["normals"] = nullptr;
+    if (s.info.normal_grid != 0)
+        json["normals"] = imageJson(s.info.normal_grid, s.info.normal_coding, s.info.normal_step, s.info.normal_bytes);
+    nlohmann::ordered_json seam;
+    seam["start"] = s.seam.start;
+    seam["paths"] = s.seam.paths;
+    seam["nodes"] = s.seam.cut_nodes;
+    seam["word"] = s.word();
+    seam["sides"] = nlohmann::ordered_json::array();
+    for (const gim_side& side : s.sides)
+        seam["sides"].push_back({{"path", labelOf(side)},
+                                 {"kind", side.kind == GIM_SIDE_BOUNDARY ? "boundary"
+                                          : side.kind == GIM_SIDE_FIRST  ? "first"
+                                                                         : "mate"},
+                                 {"length", side.length}});
+    json["seam"] = seam;
+    json["chunks"] = nlohmann::ordered_json::array();
+    for (const gim_chunk& chunk : s.chunks)
+        json["chunks"].push_back({{"type", std::string(1, chunk.type)},
+                                  {"offset", chunk.offset},
+                                  {"length", chunk.length},
+                                  {"total", chunk.total}});
+    return json;
+}
+
+void printImage(const char* name, uint32_t grid, gim_coding coding, float step)
+{
+    std::cout << std::left << std::setw(11) << name << grid << " x " << grid << ", " << nameOf(coding);
+    if (coding != GIM_CODING_FLOAT) std::cout << ", step " << step;
+    std::cout << '\n';
+}
+
+void print(const Summary& s, std::size_t bytes)
+{
+    std::cout << "file       " << bytes << " bytes, format version " << s.info.version << '\n';
+    printImage("geometry", s.info.grid, s.info.coding, s.info.step);
+    if (s.info.normal_grid != 0) printImage("normals", s.info.normal_grid, s.info.normal_coding, s.info.normal_step);
+    std::cout << "levels     " << s.info.levels << ", the coarsest " << s.info.lowest << " x " << s.info.lowest << '\n'
+              << "surface    genus " << s.seam.genus << ", " << s.seam.boundary_loops << " boundary loop"
+              << (s.seam.boundary_loops == 1 ? "" : "s") << '\n'
+              << "seam       " << s.word() << '\n'
+              << "           " << s.seam.paths << " paths, " << s.seam.cut_nodes << " nodes, starts at "
+              << s.seam.start << " of " << 4 * (s.info.lowest - 1) << '\n'
+              << "lengths   ";
+    for (const gim_side& side : s.sides)
+        if (side.kind != GIM_SIDE_MATE) std::cout << ' ' << labelOf(side) << '=' << side.length;
+    std::cout << "\nbytes      container " << s.info.container_bytes << ", seam " << s.info.seam_bytes << ", geometry "
+              << s.info.geometry_bytes << ", normals " << s.info.normal_bytes << ", other " << s.info.other_bytes << '\n';
+    for (const gim_chunk& chunk : s.chunks)
+        std::cout << "chunk      " << chunk.type << " (" << contentOf(chunk.type) << "): " << chunk.length
+                  << " bytes at " << chunk.offset << ", " << chunk.total << " in all\n";
+}
+
+} // namespace
+
+int main(int argc, char** argv)
+{
+    CLI::App app{"Shows what a .gim geometry image file holds.", "giminfo"};
+    app.footer("Exit codes: 0 done, 1 input refused, 2 usage.");
+    app.set_version_flag("--version", GIMG_VERSION);
+    std::string input;
+    bool json = false;
+    app.add_option("FILE", input, "file to look into, .gim")->required();
+    app.add_flag("--json", json, "print a JSON object instead of text");
+    if (const std::optional<int> exit = cli::parse(app, argc, argv)) return *exit;
+
+    const auto file = cli::readFile(input);
+    if (!file) return cli::fail("giminfo", cli::Refused, input + ": cannot be read");
+    Summary summary;
+    const gim_status status = summarize(*file, summary);
+    if (status != GIM_OK) return cli::fail("giminfo", cli::Refused, input + ": " + gim_status_text(status));
+    if (json) return cli::writeJson("-", jsonOf(summary, file->size())) ? cli::Done : cli::Refused;
+    print(summary, file->size());
+    return cli::Done;
+}
