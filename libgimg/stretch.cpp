@@ -10,8 +10,27 @@
 #include <cmath>
 #include <limits>
 
+extern "C" {
+int openblas_get_num_threads(void);
+void openblas_set_num_threads(int count);
+}
+
 namespace gimg {
 namespace {
+
+// CHOLMOD's dense kernels sum in an order that depends on the number of BLAS threads, and its blocks here are
+// too small for several to pay: on the bunny one thread is faster than two.
+class OneBlasThread
+{
+public:
+    OneBlasThread() : before_(openblas_get_num_threads()) { openblas_set_num_threads(1); }
+    ~OneBlasThread() { openblas_set_num_threads(before_); }
+    OneBlasThread(const OneBlasThread&) = delete;
+    OneBlasThread& operator=(const OneBlasThread&) = delete;
+
+private:
+    int before_;
+};
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
@@ -220,6 +239,7 @@ int flippedTriangles(const std::vector<Triangle>& faces, const std::vector<Vec2>
 double minimizeStretch(const Mesh& mesh, const std::vector<bool>& fixed, std::vector<Vec2>& st,
                        const DescentOptions& options)
 {
+    const OneBlasThread oneThread;
     return StretchDescent(mesh, fixed, st).run(options);
 }
 

@@ -31,13 +31,16 @@ std::optional<int> parseArguments(int argc, char** argv, Arguments& a)
 {
     CLI::App app{"Encodes a triangle mesh (OBJ, PLY, OFF, STL) as a .gim geometry image file.", "gimenc"};
     app.footer("Exit codes: 0 done, 1 input refused, 2 usage, 3 target not reachable.");
+    app.set_version_flag("--version", GIMG_VERSION);
     app.add_option("INPUT", a.input, "mesh to encode")->required();
     app.add_option("OUTPUT", a.output, "file to write, .gim")->required();
     app.add_option("--grid", a.grid, "samples a side, 2^j + 1 (default: 257, more if the cut needs it)");
     app.add_option("--lowest", a.lowest, "samples a side of the lowest level of detail, 2^l + 1 (default: 33, or as needed)");
     auto* target = app.add_option_group("target", "what the file is made for; exactly one");
-    target->add_option("--bytes", a.bytes, "size of the whole file, never exceeded");
-    target->add_option("--psnr", a.psnr, "surface PSNR in dB, met within 0.5 dB above");
+    target->add_option("--bytes", a.bytes, "size of the whole file, never exceeded")
+        ->check(CLI::PositiveNumber);
+    target->add_option("--psnr", a.psnr, "surface PSNR in dB, met within 0.5 dB above")
+        ->check(CLI::PositiveNumber);
     target->add_option("--raw", a.raw, "no compression loss but 12-bit integers, or none at all with float")
         ->check(CLI::IsMember({"12", "float"}));
     target->require_option(1);

@@ -1,0 +1,78 @@
+// The Stanford bunny that corpus/fetch brings, end to end. Slow under sanitizers.
+#include "gimg/decode.h"
+#include "gimg/encode.h"
+#include "gimg/mesh_io.h"
+#include "manifold_check.h"
+
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <filesystem>
+
+namespace gimg {
+namespace {
+
+std::string bunnyPath()
+{
+    const char* folder = std::getenv("GIMG_CORPUS_DIR");
+    return (folder != nullptr ? std::string(folder) : std::string(GIMG_SOURCE_CORPUS) + "/cache") + "/bunny.obj";
+}
+
+class Bunny : public testing::Test
+{
+protected:
+    static void SetUpTestSuite()
+    {
+        Result<MeshFile> read = readMesh(bunnyPath());
+        ASSERT_TRUE(read.ok()) << read.error().message << " (corpus/fetch bunny brings it)";
+        mesh_ = new Mesh(std::move(read->mesh));
+    }
+    static void TearDownTestSuite()
+    {
+        delete mesh_;
+        mesh_ = nullptr;
+    }
+    static Mesh* mesh_;
+};
+Mesh* Bunny::mesh_ = nullptr;
+
+TEST_F(Bunny, FitsInFewKilobytes)
+{
+    ASSERT_NE(mesh_, nullptr);
+    EncodeOptions options;
+    options.bytes = 12000;
+    const Result<EncodedMesh> encoded = encodeMesh(*mesh_, options);
+    ASSERT_TRUE(encoded.ok()) << encoded.error().message;
+    EXPECT_LE(encoded->file.size(), 12000u);
+    EXPECT_GE(encoded->file.size(), 11880u);
+    EXPECT_GT(encoded->psnr, 68);
+    EXPECT_GT(encoded->stretchEfficiency, 0.33);
+    const Result<DecodedImages> images = decodeImages(encoded->file);
+    ASSERT_TRUE(images.ok());
+    EXPECT_LE(images->info.container_bytes, 48u);
+    for (unsigned level = 0; level < images->info.levels; ++level) {
+        const Result<Mesh> decoded = levelMesh(encoded->file, *images, level);
+        ASSERT_TRUE(decoded.ok());
+        const test::ManifoldCheck check = test::checkManifold(decoded->faces);
+        EXPECT_EQ(check.fault, "");
+        EXPECT_EQ(check.genus, 0);
+        EXPECT_EQ(check.boundaries, 0);
+    }
+}
+
+TEST_F(Bunny, ThreeKilobytesAndNoLossAtAll)
+{
+    ASSERT_NE(mesh_, nullptr);
+    EncodeOptions options;
+    options.bytes = 3000;
+    const Result<EncodedMesh> small = encodeMesh(*mesh_, options);
+    ASSERT_TRUE(small.ok());
+    EXPECT_GT(small->psnr, 57);
+    options.target = EncodeTarget::RawFloat;
+    const Result<EncodedMesh> raw = encodeMesh(*mesh_, options);
+    ASSERT_TRUE(raw.ok());
+    EXPECT_GT(raw->psnr, 74.5);
+}
+
+} // namespace
+} // namespace gimg

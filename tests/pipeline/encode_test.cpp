@@ -1,0 +1,244 @@
+#include "gimg/encode.h"
+
+#include "gimg/decode.h"
+#include "gimg/distance.h"
+#include "manifold_check.h"
+#include "corpus/shapes.h"
+
+#include <gmock/gmock.h>
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+namespace gimg {
+namespace {
+
+EncodedMesh encode(const Mesh& mesh, const EncodeOptions& options)
+{
+    Result<EncodedMesh> encoded = encodeMesh(mesh, options);
+    EXPECT_TRUE(encoded.ok()) << encoded.error().message;
+    return encoded ? std::move(*encoded) : EncodedMesh{};
+}
+
+EncodeOptions forBytes(size_t bytes, int grid = 0)
+{
+    EncodeOptions options;
+    options.bytes = bytes;
+    options.grid = grid;
+    return options;
+}
+
+EncodeOptions forTarget(EncodeTarget target, int grid)
+{
+    EncodeOptions options;
+    options.target = target;
+    options.grid = grid;
+    return options;
+}
+
+Mesh decodedLevel(const EncodedMesh& encoded, unsigned level, unsigned flags = 0)
+{
+    const Result<DecodedImages> images = decodeImages(encoded.file, flags);
+    EXPECT_TRUE(images.ok());
+    Result<Mesh> mesh = levelMesh(encoded.file, *images, level, flags);
+    EXPECT_TRUE(mesh.ok());
+    return *mesh;
+}
+
+double psnrOf(const Mesh& reference, const Mesh& test)
+{
+    const Result<SurfaceDistance> distance = compareSurfaces(reference, test);
+    EXPECT_TRUE(distance.ok());
+    return distance->psnr();
+}
+
+// The promise of no cracks: the mesh of every level, with one vertex a class of grid points, is a manifold of the
+// input's genus and boundary loops.
+class EveryLevel : public testing::TestWithParam<std::pair<int, int>>
+{
+};
+
+TEST_P(EveryLevel, HasTheTopologyOfTheInput)
+{
+    const auto [genus, loops] = GetParam();
+    const Mesh mesh = shapes::surfaceOfGenus(genus, loops, 6);
+    const EncodedMesh encoded = encode(mesh, forBytes(4000));
+    EXPECT_EQ(encoded.topology.genus, genus);
+    EXPECT_EQ(encoded.topology.boundaries, loops);
+    const Result<DecodedImages> images = decodeImages(encoded.file);
+    ASSERT_TRUE(images.ok());
+    EXPECT_EQ(static_cast<int>(images->info.grid), encoded.grid);
+    EXPECT_GE(images->info.levels, 2u);
+    for (unsigned level = 0; level < images->info.levels; ++level) {
+        const Mesh decoded = decodedLevel(encoded, level);
+        const test::ManifoldCheck check = test::checkManifold(decoded.faces);
+        EXPECT_EQ(check.fault, "") << "level " << level;
+        EXPECT_EQ(check.genus, genus) << "level " << level;
+        EXPECT_EQ(check.boundaries, loops) << "level " << level;
+        for (const Vec3& p : decoded.positions) ASSERT_TRUE(p.allFinite());
+        const int n = (encoded.grid - 1) >> level;
+        EXPECT_EQ(decoded.faceCount(), 2 * n * n);
+    }
+    // Without fusing every sample is its own vertex: a disk.
+    const test::ManifoldCheck open = test::checkManifold(decodedLevel(encoded, 1, GIM_NO_FUSE).faces);
+    EXPECT_EQ(open.genus, 0);
+    EXPECT_EQ(open.boundaries, 1);
+}
+
+std::vector<std::pair<int, int>> generaAndLoops()
+{
+    std::vector<std::pair<int, int>> all;
+    for (int genus : {0, 1, 2, 3, 7})
+        for (int loops = 0; loops <= 4; ++loops) all.emplace_back(genus, loops);
+    return all;
+}
+INSTANTIATE_TEST_SUITE_P(AllTopologies, EveryLevel, testing::ValuesIn(generaAndLoops()));
+
+TEST(EncodeBytes, NeverOverAndAtMostOnePercentOr24Under)
+{
+    const Mesh mesh = shapes::wavySphere(1, 0.3, 5, 24);
+    double last = 0;
+    for (size_t bytes : {300, 1000, 3000}) {
+        const EncodedMesh encoded = encode(mesh, forBytes(bytes, 129));
+        EXPECT_LE(encoded.file.size(), bytes);
+        EXPECT_GE(encoded.file.size() + std::max<size_t>(24, bytes / 100), bytes);
+        EXPECT_GT(encoded.psnr, last + 3); // more bytes, a better surface
+        last = encoded.psnr;
+    }
+    EXPECT_GT(last, 68);
+    const EncodedMesh large = encode(mesh, forBytes(40000, 129));
+    EXPECT_LE(large.file.size(), 40000u);
+    EXPECT_GE(large.file.size(), 39600u);
+}
+
+TEST(EncodeBytes, ATargetBelowTheSmallestFileSaysWhatCanBeHad)
+{
+    const Result<EncodedMesh> encoded = encodeMesh(shapes::sphere(1, 8), forBytes(20, 65));
+    ASSERT_FALSE(encoded.ok());
+    EXPECT_EQ(encoded.error().kind, ErrorKind::TargetUnreachable);
+    EXPECT_THAT(encoded.error().message, testing::ContainsRegex("[0-9]+ bytes"));
+}
+
+TEST(EncodePsnr, IsMetWithinHalfADecibel)
+{
+    const Mesh mesh = shapes::torus(3, 1, 96, 48);
+    EncodeOptions options = forTarget(EncodeTarget::Psnr, 129);
+    for (double psnr : {45.0, 58.0}) {
+        options.psnr = psnr;
+        const EncodedMesh encoded = encode(mesh, options);
+        EXPECT_GE(encoded.psnr, psnr);
+        EXPECT_LE(encoded.psnr, psnr + 0.5);
+        EXPECT_NEAR(encoded.psnr, psnrOf(mesh, decodedLevel(encoded, 0)), 1e-9);
+    }
+}
+
+TEST(EncodePsnr, ATargetAboveTheGridSaysWhatItHolds)
+{
+    EncodeOptions options = forTarget(EncodeTarget::Psnr, 33);
+    options.psnr = 100;
+    const Result<EncodedMesh> encoded = encodeMesh(shapes::torus(3, 1, 64, 32), options);
+    ASSERT_FALSE(encoded.ok());
+    EXPECT_EQ(encoded.error().kind, ErrorKind::TargetUnreachable);
+    EXPECT_THAT(encoded.error().message, testing::HasSubstr("larger --grid"));
+}
+
+TEST(EncodeRaw, FloatIsBetterThan12BitsAndBothCloseToTheSurface)
+{
+    const Mesh mesh = shapes::torus(3, 1, 96, 48);
+    const EncodedMesh exact = encode(mesh, forTarget(EncodeTarget::RawFloat, 129));
+    const EncodedMesh integers = encode(mesh, forTarget(EncodeTarget::Raw12, 129));
+    EXPECT_GT(exact.psnr, integers.psnr);
+    EXPECT_GT(integers.psnr, 60);
+    EXPECT_GT(exact.file.size(), integers.file.size());
+    // 12 bits over a cube of side 8: at most half a step off, 8 / 4095 / 2 a coordinate.
+    const Mesh a = decodedLevel(exact, 0), b = decodedLevel(integers, 0);
+    ASSERT_EQ(a.vertexCount(), b.vertexCount());
+    for (int v = 0; v < a.vertexCount(); ++v)
+        EXPECT_LE((a.positions[v] - b.positions[v]).cwiseAbs().maxCoeff(), 0.5 * 8 / 4095 * 1.0001);
+}
+
+TEST(EncodeRaw, FinerGridsConvergeQuadratically)
+{
+    // Linear interpolation of a smooth surface: the error falls by 4, 12 dB, when the grid doubles; the facets of the
+    // reference bound it from below.
+    const Mesh mesh = shapes::torus(3, 1, 480, 240);
+    const double coarse = encode(mesh, forTarget(EncodeTarget::RawFloat, 33)).psnr;
+    const double fine = encode(mesh, forTarget(EncodeTarget::RawFloat, 65)).psnr;
+    EXPECT_GT(fine, coarse + 9.5);
+    EXPECT_LT(fine, coarse + 14);
+}
+
+TEST(EncodeNormals, AreDecodedAtTheirOwnResolution)
+{
+    EncodeOptions options = forBytes(8000, 65);
+    options.normals = 129;
+    const EncodedMesh encoded = encode(shapes::sphere(1, 24), options);
+    EXPECT_LE(encoded.file.size(), 8000u);
+    const Result<DecodedImages> images = decodeImages(encoded.file);
+    ASSERT_TRUE(images.ok());
+    ASSERT_EQ(images->normals.width, 129);
+    // The sphere's normals are its points.
+    double worst = 1;
+    for (int j = 0; j < 65; ++j)
+        for (int i = 0; i < 65; ++i) {
+            Vec3 p, n;
+            for (int k = 0; k < 3; ++k) p[k] = images->geometry.at(i, j, k), n[k] = images->normals.at(2 * i, 2 * j, k);
+            EXPECT_NEAR(n.norm(), 1, 1e-6);
+            worst = std::min(worst, n.dot(p) / p.norm());
+        }
+    EXPECT_GT(worst, std::cos(5 * M_PI / 180));
+}
+
+TEST(EncodeThreads, FileDoesNotDependOnThem)
+{
+    const Mesh mesh = shapes::surfaceOfGenus(2, 1, 8);
+    EncodeOptions options = forBytes(3000);
+    options.threads = 1;
+    const EncodedMesh one = encode(mesh, options);
+    options.threads = 2;
+    const EncodedMesh two = encode(mesh, options);
+    EXPECT_EQ(one.file, two.file);
+}
+
+TEST(EncodeScale, LargeOffsetsKeepTheirPrecision)
+{
+    // A survey's coordinates: millions of metres away, detail of a metre.
+    Mesh mesh = shapes::sphere(100, 16);
+    for (Vec3& p : mesh.positions) p += Vec3(5e5, 4.1e6, 200);
+    const EncodedMesh encoded = encode(mesh, forTarget(EncodeTarget::RawFloat, 65));
+    EXPECT_GT(encoded.psnr, 55);
+    const EncodedMesh lossy = encode(mesh, forBytes(6000, 65));
+    EXPECT_GT(lossy.psnr, 55);
+}
+
+TEST(EncodeTiny, ATetrahedronAndATriangleWork)
+{
+    Mesh tetrahedron;
+    tetrahedron.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
+    tetrahedron.faces = {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}};
+    const EncodedMesh closed = encode(tetrahedron, forBytes(3000, 33));
+    EXPECT_EQ(test::checkManifold(decodedLevel(closed, 0).faces).boundaries, 0);
+    EXPECT_GT(closed.psnr, 35);
+    Mesh triangle;
+    triangle.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+    triangle.faces = {{0, 1, 2}};
+    const EncodedMesh open = encode(triangle, forBytes(1000, 33));
+    EXPECT_EQ(test::checkManifold(decodedLevel(open, 0).faces).boundaries, 1);
+    EXPECT_GT(open.psnr, 35);
+}
+
+TEST(EncodeOptions, OutOfRangeIsRefused)
+{
+    const Mesh mesh = shapes::sphere(1, 4);
+    EncodeOptions grid = forBytes(2000, 100), normals = forBytes(2000, 65), threads = forBytes(2000, 65);
+    normals.normals = 100;
+    threads.threads = -1;
+    for (const EncodeOptions& bad : {grid, normals, threads}) {
+        const Result<EncodedMesh> encoded = encodeMesh(mesh, bad);
+        ASSERT_FALSE(encoded.ok());
+        EXPECT_EQ(encoded.error().kind, ErrorKind::BadArgument) << encoded.error().message;
+    }
+}
+
+} // namespace
+} // namespace gimg

@@ -1,0 +1,129 @@
+// The command line of gimenc, run as a user does.
+#include "gimg/mesh_io.h"
+#include "corpus/shapes.h"
+#include "temporary_files.h"
+
+#include <gmock/gmock.h>
+#include <nlohmann/json.hpp>
+
+#include <cstdlib>
+#include <sys/wait.h>
+
+namespace gimg {
+namespace {
+
+using testing::HasSubstr;
+
+class Gimenc : public test::TemporaryFiles
+{
+protected:
+    struct Ended
+    {
+        int code;
+        std::string out, err;
+    };
+    Ended run(const std::string& program, const std::string& arguments)
+    {
+        const std::string command =
+            program + " " + arguments + " > '" + path("out") + "' 2> '" + path("err") + "'";
+        const int status = std::system(command.c_str());
+        return {WEXITSTATUS(status), read(path("out")), read(path("err"))};
+    }
+    Ended gimenc(const std::string& arguments) { return run(GIMENC_PATH, arguments); }
+    std::string mesh(const std::string& name, const Mesh& mesh)
+    {
+        EXPECT_TRUE(writeMesh(mesh, path(name)).ok());
+        return " '" + path(name) + "'";
+    }
+    std::string file(const std::string& name) { return " '" + path(name) + "'"; }
+};
+
+TEST_F(Gimenc, ReportHasTheDocumentedKeys)
+{
+    const Ended ended = gimenc("--bytes 2000 --grid 65 --normals 33 --json -" +
+                               mesh("torus.ply", shapes::torus(2, 1, 40, 20)) + file("torus.gim"));
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    const auto json = nlohmann::json::parse(ended.out);
+    EXPECT_EQ(json.at("vertices"), 800);
+    EXPECT_EQ(json.at("faces"), 1600);
+    EXPECT_EQ(json.at("genus"), 1);
+    EXPECT_EQ(json.at("boundaries"), 0);
+    EXPECT_EQ(json.at("grid"), 65);
+    const auto& bytes = json.at("bytes");
+    const int total = bytes.at("total");
+    EXPECT_EQ(total, static_cast<int>(read(path("torus.gim")).size()));
+    EXPECT_EQ(total, bytes.at("container").get<int>() + bytes.at("sideband").get<int>() +
+                         bytes.at("geometry").get<int>() + bytes.at("normals").get<int>());
+    EXPECT_LE(total, 2000);
+    EXPECT_GT(json.at("psnr").get<double>(), 35);
+    EXPECT_GT(json.at("stretch_efficiency").get<double>(), 0.3);
+    EXPECT_EQ(json.at("cut").at("paths"), 3);
+    EXPECT_EQ(json.at("cut").at("nodes"), 2);
+    EXPECT_GT(json.at("cut").at("length").get<double>(), 2 * 3.14);
+    double sum = 0;
+    for (const char* key : {"read", "cut", "parameterize", "sample", "code"}) sum += json.at("seconds").at(key).get<double>();
+    EXPECT_GE(json.at("seconds").at("total").get<double>(), 0.9 * sum);
+    EXPECT_TRUE(json.at("warnings").is_array());
+}
+
+TEST_F(Gimenc, ExitCodesTellRefusedUsageAndUnreachableApart)
+{
+    const std::string sphere = mesh("sphere.obj", shapes::sphere(1, 6));
+    const std::string out = file("out.gim");
+    EXPECT_EQ(gimenc("--bytes 2000 --grid 65" + sphere + out).code, 0);
+    EXPECT_EQ(gimenc("--bytes 2000 /nonexistent.ply" + out).code, 1);
+    EXPECT_EQ(gimenc(sphere + out).code, 2);                            // no target
+    EXPECT_EQ(gimenc("--bytes 2000 --psnr 60" + sphere + out).code, 2); // two
+    EXPECT_EQ(gimenc("--bytes -5" + sphere + out).code, 2);
+    EXPECT_EQ(gimenc("--raw 13" + sphere + out).code, 2);
+    EXPECT_EQ(gimenc("--bytes 2000 --grid 100" + sphere + out).code, 2);
+    EXPECT_EQ(gimenc("--bytes 2000 --threads x" + sphere + out).code, 2);
+    EXPECT_EQ(gimenc("--bytes 10 --grid 65" + sphere + out).code, 3);
+    EXPECT_EQ(gimenc("--psnr 150 --grid 33" + sphere + out).code, 3);
+    const Ended unwritable = gimenc("--bytes 2000 --grid 33" + sphere + " /nonexistent/out.gim");
+    EXPECT_EQ(unwritable.code, 1);
+    EXPECT_THAT(unwritable.err, HasSubstr("/nonexistent/out.gim"));
+}
+
+TEST_F(Gimenc, RefusalLeavesAnEarlierFileAlone)
+{
+    write("keep.gim", "earlier");
+    EXPECT_EQ(gimenc("--bytes 2000" + std::string(" '") + write("empty.ply", "") + "'" + file("keep.gim")).code, 1);
+    EXPECT_EQ(gimenc("--bytes 10 --grid 33" + mesh("s.ply", shapes::sphere(1, 4)) + file("keep.gim")).code, 3);
+    EXPECT_EQ(read(path("keep.gim")), "earlier");
+}
+
+TEST_F(Gimenc, SeveralComponentsAreRefusedUnlessTheLargestIsAskedFor)
+{
+    Mesh two = shapes::sphere(1, 4);
+    const int offset = two.vertexCount();
+    const Mesh torus = shapes::torus(5, 1, 24, 12);
+    for (const Vec3& p : torus.positions) two.positions.push_back(p);
+    for (const Triangle& f : torus.faces) two.faces.push_back({f[0] + offset, f[1] + offset, f[2] + offset});
+    const std::string input = mesh("two.off", two);
+    const Ended refused = gimenc("--bytes 2000 --grid 65" + input + file("two.gim"));
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_THAT(refused.err, HasSubstr("2 connected components"));
+    const Ended taken = gimenc("--bytes 2000 --grid 65 --component largest --json -" + input + file("two.gim"));
+    ASSERT_EQ(taken.code, 0) << taken.err;
+    EXPECT_EQ(nlohmann::json::parse(taken.out).at("genus"), 1);
+    EXPECT_FALSE(nlohmann::json::parse(taken.out).at("warnings").empty());
+}
+
+TEST_F(Gimenc, WhatItWritesDecodesToTheSurfaceItMeasured)
+{
+    const std::string input = mesh("shape.ply", shapes::surfaceOfGenus(1, 2, 8));
+    const Ended encoded = gimenc("--psnr 50 --grid 129 --json -" + input + file("shape.gim"));
+    ASSERT_EQ(encoded.code, 0) << encoded.err;
+    ASSERT_EQ(run(GIMDEC_PATH, file("shape.gim") + file("decoded.obj")).code, 0);
+    const Ended compared = run(GIMRD_PATH, "compare --json" + input + file("decoded.obj"));
+    ASSERT_EQ(compared.code, 0) << compared.err;
+    const double claimed = nlohmann::json::parse(encoded.out).at("psnr");
+    const double measured = nlohmann::json::parse(compared.out).at("psnr");
+    EXPECT_NEAR(claimed, measured, 0.02);
+    EXPECT_GE(claimed, 50);
+    EXPECT_LE(claimed, 50.5);
+}
+
+} // namespace
+} // namespace gimg
