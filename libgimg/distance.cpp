@@ -27,12 +27,12 @@ double SurfaceDistance::psnr() const
 
 namespace {
 
-constexpr double kLargestCoordinate = 1e9;   // in units of the reference: beyond, floats cull nothing
-constexpr double kRoundingDistance = 1e-14;  // samples of a triangle lie this far off it
-constexpr double kSliverSine2 = 1e-20;       // below, a normal is mostly rounding
+constexpr double kLargestCoordinate = 1e9;  // in units of the reference: beyond, floats cull nothing
+constexpr double kRoundingDistance = 1e-14; // samples of a triangle lie this far off it
+constexpr double kSliverSine2 = 1e-20;      // below, a normal is mostly rounding
 
-/// The unit in which Embree's floats are safe: the reference centred, its longest side between 1/2 and 1. The scale
-/// is a power of two, so that it costs no precision.
+/// The unit in which Embree's floats are safe: the reference centred, its longest side between 1/2 and 1. The
+/// scale is a power of two, so that it costs no precision.
 struct Frame
 {
     Vec3 center = Vec3::Zero();
@@ -140,8 +140,8 @@ public:
     /// @param nearestFace  in: any face, best one near q; out: the nearest one
     double distance(const Vec3& q, int& nearestFace) const
     {
-        // Embree culls with rounded coordinates: neither those of the triangles nor that of the query may hide the
-        // nearest triangle, so the search radius stays a little larger than the distance found.
+        // Embree culls with rounded coordinates: neither those of the triangles nor that of the query may
+        // hide the nearest triangle, so the search radius stays a little larger than the distance found.
         struct Nearest
         {
             const Surface& surface;
@@ -193,11 +193,13 @@ private:
         for (int i = 0; i < options.samples; ++i) {
             Random random(options.seed, static_cast<uint64_t>(i));
             const double area = areaUpTo_.back() * (i + random.next()) / options.samples;
-            const auto at = std::upper_bound(areaUpTo_.begin(), areaUpTo_.end(), std::min(area, areaUpTo_.back()));
+            const auto at =
+                std::upper_bound(areaUpTo_.begin(), areaUpTo_.end(), std::min(area, areaUpTo_.back()));
             const auto f = at != areaUpTo_.end() ? at - areaUpTo_.begin() : lastWithArea();
             const Triangle& t = faces_[static_cast<size_t>(f)];
             const double s = std::sqrt(random.next()), r = random.next();
-            points_.push_back((1 - s) * positions_[t[0]] + s * (1 - r) * positions_[t[1]] + s * r * positions_[t[2]]);
+            points_.push_back((1 - s) * positions_[t[0]] + s * (1 - r) * positions_[t[1]] +
+                              s * r * positions_[t[2]]);
         }
         std::vector<bool> taken(positions_.size(), false);
         for (const Triangle& t : faces_)
@@ -215,8 +217,9 @@ private:
     void buildTree(RTCDevice device)
     {
         const Geometry geometry(rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE));
-        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(
-            geometry.get(), RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3, 3 * sizeof(float), positions_.size()));
+        auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry.get(), RTC_BUFFER_TYPE_VERTEX,
+                                                                     0, RTC_FORMAT_FLOAT3, 3 * sizeof(float),
+                                                                     positions_.size()));
         auto* indices = static_cast<unsigned*>(rtcSetNewGeometryBuffer(
             geometry.get(), RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(unsigned), faces_.size()));
         if (!vertices || !indices) throw std::bad_alloc();
@@ -254,17 +257,21 @@ OneSided distances(const Surface& from, const Surface& to, const DistanceOptions
     const int cores = tbb::info::default_concurrency();
     tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
     arena.execute([&] {
-        tbb::parallel_for(tbb::blocked_range<size_t>(0, points.size(), 256), [&](const tbb::blocked_range<size_t>& range) {
-            // Points follow the faces, so the face nearest to one is near the next; the distance is the same from any.
-            int nearestFace = 0;
-            for (size_t i = range.begin(); i < range.end(); ++i) distance[i] = to.distance(points[i], nearestFace);
-        });
+        tbb::parallel_for(tbb::blocked_range<size_t>(0, points.size(), 256),
+                          [&](const tbb::blocked_range<size_t>& range) {
+                              // Points follow the faces, so the face nearest to one is near the next; the
+                              // distance is the same from any.
+                              int nearestFace = 0;
+                              for (size_t i = range.begin(); i < range.end(); ++i)
+                                  distance[i] = to.distance(points[i], nearestFace);
+                          });
     });
     // Summed in order, so that the threads leave no trace.
     double sum = 0;
     for (int i = 0; i < options.samples; ++i) sum += distance[i] * distance[i];
     const auto farthest = std::max_element(distance.begin(), distance.end());
-    return {std::sqrt(sum / options.samples), *farthest, points[static_cast<size_t>(farthest - distance.begin())]};
+    return {std::sqrt(sum / options.samples), *farthest,
+            points[static_cast<size_t>(farthest - distance.begin())]};
 }
 
 /// Empty where the mesh can be measured.
@@ -278,7 +285,8 @@ std::optional<Error> objection(const Mesh& mesh, const std::string& which)
                                                          " names vertex " + std::to_string(v) + " of " +
                                                          std::to_string(mesh.vertexCount())};
             if (!mesh.positions[v].allFinite())
-                return Error{ErrorKind::NotFinite, "the " + which + " mesh: vertex " + std::to_string(v) + " is not finite"};
+                return Error{ErrorKind::NotFinite,
+                             "the " + which + " mesh: vertex " + std::to_string(v) + " is not finite"};
         }
     return std::nullopt;
 }
@@ -330,7 +338,8 @@ try {
     if (ref.error) return *ref.error;
     if (const std::optional<Error> error = objection(test, "test")) return *error;
     const Surface surface(test, *ref.frame, ref.options, ref.device.get());
-    if (surface.tooFar()) return Error{ErrorKind::BadArgument, "the meshes differ in size or place beyond measure"};
+    if (surface.tooFar())
+        return Error{ErrorKind::BadArgument, "the meshes differ in size or place beyond measure"};
     if (!surface.hasArea()) return Error{ErrorKind::EmptyMesh, "the test mesh has no area"};
     const OneSided forth = distances(*ref.surface, surface, ref.options);
     const OneSided back = distances(surface, *ref.surface, ref.options);
@@ -348,7 +357,8 @@ try {
     return Error{ErrorKind::BadArgument, failure.what()};
 }
 
-Result<SurfaceDistance> compareSurfaces(const Mesh& reference, const Mesh& test, const DistanceOptions& options)
+Result<SurfaceDistance> compareSurfaces(const Mesh& reference, const Mesh& test,
+                                        const DistanceOptions& options)
 {
     return SurfaceMeasure(reference, options).against(test);
 }

@@ -147,7 +147,7 @@ Status startCoarsest(const Hierarchy& hierarchy, const std::vector<uint8_t>& squ
         fixed[i] = squareSides[vertexOf[i]] != 0;
         position[i] = st[vertexOf[i]];
     }
-    if (const Status mapped = meanValueMap(level, fixed, {}, position); !mapped) return mapped;
+    if (const Status mapped = meanValueMap(level, fixed, position); !mapped) return mapped;
     if (const int flipped = flippedTriangles(level.faces, position); flipped > 0)
         return Error{ErrorKind::FlippedTriangle, std::to_string(flipped) + " of " +
                                                      std::to_string(level.faces.size()) +

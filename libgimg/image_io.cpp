@@ -23,29 +23,34 @@ namespace {
 
 constexpr int kLargestSide = 32768;
 
-Error failure(ErrorKind kind, const std::string& path, const std::string& what) { return {kind, path + ": " + what}; }
+Error failure(ErrorKind kind, const std::string& path, const std::string& what)
+{
+    return {kind, path + ": " + what};
+}
 
 Status checkedSize(const FloatImage& image, const std::string& path)
 {
     if (image.width < 1 || image.height < 1 || image.width > kLargestSide || image.height > kLargestSide)
         return failure(ErrorKind::BadArgument, path,
-                       "an image of " + std::to_string(image.width) + " x " + std::to_string(image.height) + " pixels");
+                       "an image of " + std::to_string(image.width) + " x " + std::to_string(image.height) +
+                           " pixels");
     if (image.samples.size() != 3 * static_cast<size_t>(image.width) * static_cast<size_t>(image.height))
         return failure(ErrorKind::BadArgument, path,
-                       std::to_string(image.samples.size()) + " samples for " + std::to_string(image.width) + " x " +
-                           std::to_string(image.height) + " pixels of three");
+                       std::to_string(image.samples.size()) + " samples for " + std::to_string(image.width) +
+                           " x " + std::to_string(image.height) + " pixels of three");
     return Done{};
 }
 
 Status checkedForPng(const FloatImage& image, const std::string& path)
 {
     if (const Status status = checkedSize(image, path); !status) return status;
-    const auto bad = std::find_if(image.samples.begin(), image.samples.end(), [](float x) { return !std::isfinite(x); });
+    const auto bad =
+        std::find_if(image.samples.begin(), image.samples.end(), [](float x) { return !std::isfinite(x); });
     if (bad == image.samples.end()) return Done{};
     const auto pixel = (bad - image.samples.begin()) / 3;
     return failure(ErrorKind::NotFinite, path,
-                   "pixel (" + std::to_string(pixel % image.width) + ", " + std::to_string(pixel / image.width) +
-                       ") is not finite");
+                   "pixel (" + std::to_string(pixel % image.width) + ", " +
+                       std::to_string(pixel / image.width) + ") is not finite");
 }
 
 using File = std::unique_ptr<FILE, int (*)(FILE*)>;
@@ -53,8 +58,9 @@ using File = std::unique_ptr<FILE, int (*)(FILE*)>;
 // libpng leaves by longjmp where something fails, so nothing in here may need a destructor.
 bool encodePng(FILE* file, int width, int height, int bits, const std::vector<uint8_t>& bytes)
 {
-    png_structp png = png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr,
-                                              [](png_structp, png_const_charp) {}); // errors are told by the caller
+    png_structp png =
+        png_create_write_struct(PNG_LIBPNG_VER_STRING, nullptr, nullptr,
+                                [](png_structp, png_const_charp) {}); // errors are told by the caller
     png_infop info = png ? png_create_info_struct(png) : nullptr;
     if (!info || setjmp(png_jmpbuf(png))) {
         png_destroy_write_struct(&png, &info);
@@ -62,17 +68,20 @@ bool encodePng(FILE* file, int width, int height, int bits, const std::vector<ui
     }
     png_init_io(png, file);
     png_set_IHDR(png, info, static_cast<png_uint_32>(width), static_cast<png_uint_32>(height), bits,
-                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT, PNG_FILTER_TYPE_DEFAULT);
+                 PNG_COLOR_TYPE_RGB, PNG_INTERLACE_NONE, PNG_COMPRESSION_TYPE_DEFAULT,
+                 PNG_FILTER_TYPE_DEFAULT);
     png_write_info(png, info);
     const size_t rowSize = bytes.size() / static_cast<size_t>(height);
-    for (int row = 0; row < height; ++row) png_write_row(png, bytes.data() + static_cast<size_t>(row) * rowSize);
+    for (int row = 0; row < height; ++row)
+        png_write_row(png, bytes.data() + static_cast<size_t>(row) * rowSize);
     png_write_end(png, info);
     png_destroy_write_struct(&png, &info);
     return true;
 }
 
 /// @param level  maps channel and sample to [0, 1]
-template <class Level> Status writePng(const FloatImage& image, const std::string& path, int bits, Level level)
+template <class Level>
+Status writePng(const FloatImage& image, const std::string& path, int bits, Level level)
 try {
     std::vector<uint8_t> bytes;
     bytes.reserve(image.samples.size() * static_cast<size_t>(bits / 8));
@@ -84,7 +93,8 @@ try {
         bytes.push_back(static_cast<uint8_t>(value & 0xff));
     }
     File file(std::fopen(path.c_str(), "wb"), std::fclose);
-    if (!file || !encodePng(file.get(), image.width, image.height, bits, bytes) || std::fclose(file.release()) != 0)
+    if (!file || !encodePng(file.get(), image.width, image.height, bits, bytes) ||
+        std::fclose(file.release()) != 0)
         return failure(ErrorKind::FileNotWritable, path, "cannot be written");
     return Done{};
 } catch (const std::exception& e) {
@@ -110,7 +120,8 @@ Imf::FrameBuffer frameBuffer(float* samples, int width, int left, int top)
     const auto offset = static_cast<ptrdiff_t>(stride) * left + static_cast<ptrdiff_t>(rowStride) * top;
     Imf::FrameBuffer buffer;
     for (size_t c = 0; c < 3; ++c)
-        buffer.insert(kChannels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(samples + c) - offset, stride, rowStride));
+        buffer.insert(kChannels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(samples + c) - offset,
+                                               stride, rowStride));
     return buffer;
 }
 
@@ -130,7 +141,10 @@ BoundingCube boundingCube(const FloatImage& image)
 }
 
 Status writePng8(const FloatImage& image, const std::string& path) { return writeScaledPng(image, path, 8); }
-Status writePng16(const FloatImage& image, const std::string& path) { return writeScaledPng(image, path, 16); }
+Status writePng16(const FloatImage& image, const std::string& path)
+{
+    return writeScaledPng(image, path, 16);
+}
 
 Status writeNormalPng(const FloatImage& normals, const std::string& path)
 {

@@ -22,8 +22,7 @@ double halfAngleTangent(const Vec3& p, const Vec3& a, const Vec3& b)
 
 } // namespace
 
-Status meanValueMap(const Mesh& mesh, const std::vector<bool>& fixed, const std::vector<double>& pull,
-                    std::vector<Vec2>& position)
+Status meanValueMap(const Mesh& mesh, const std::vector<bool>& fixed, std::vector<Vec2>& position)
 {
     std::vector<int> unknown(mesh.positions.size(), -1);
     int unknowns = 0;
@@ -33,7 +32,6 @@ Status meanValueMap(const Mesh& mesh, const std::vector<bool>& fixed, const std:
     if (unknowns == 0) return Done{};
 
     const double shortest = 1e-7 * boundingBoxDiagonal(mesh);
-    const auto pullOf = [&](int v) { return pull.empty() ? 1.0 : pull[v]; };
     std::vector<double> rowSum(unknowns, 0.0);
     const auto forWeights = [&](auto use) {
         for (const Triangle& f : mesh.faces)
@@ -45,7 +43,7 @@ Status meanValueMap(const Mesh& mesh, const std::vector<bool>& fixed, const std:
                     halfAngleTangent(mesh.positions[v], mesh.positions[ends[0]], mesh.positions[ends[1]]);
                 for (int w : ends)
                     use(unknown[v], w,
-                        pullOf(w) * tangent / std::max(shortest, (mesh.positions[w] - mesh.positions[v]).norm()));
+                        tangent / std::max(shortest, (mesh.positions[w] - mesh.positions[v]).norm()));
             }
     };
     forWeights([&](int row, int, double weight) { rowSum[row] += weight; });

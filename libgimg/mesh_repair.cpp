@@ -63,8 +63,8 @@ template <class Visit> void forEachEdge(const std::vector<EdgeUse>& uses, Visit 
     }
 }
 
-/// What keeps triangles from being an oriented manifold. The first element of each kind is the one in the lowest
-/// place of the file.
+/// What keeps triangles from being an oriented manifold. The first element of each kind is the one in the
+/// lowest place of the file.
 struct Defects
 {
     int64_t nonManifoldEdges = 0;
@@ -186,8 +186,10 @@ Triangles cleaned(const std::vector<Triangle>& faces)
     std::sort(sorted.begin(), sorted.end());
     std::vector<bool> keep(faces.size(), false);
     for (size_t i = 0; i < sorted.size(); ++i) {
-        if (i > 0 && sorted[i].first == sorted[i - 1].first) ++result.duplicate;
-        else keep[sorted[i].second] = true;
+        if (i > 0 && sorted[i].first == sorted[i - 1].first)
+            ++result.duplicate;
+        else
+            keep[sorted[i].second] = true;
     }
     for (size_t f = 0; f < faces.size(); ++f)
         if (keep[f]) result.faces.push_back(faces[f]);
@@ -239,7 +241,8 @@ std::string harmOfWelding(const Triangles& before, const Triangles& after, int v
 {
     if (const int64_t n = after.repeatedVertex - before.repeatedVertex; n > 0)
         return plural(n, "face", "faces") + " with a repeated vertex";
-    if (const int64_t n = after.duplicate - before.duplicate; n > 0) return plural(n, "duplicate face", "duplicate faces");
+    if (const int64_t n = after.duplicate - before.duplicate; n > 0)
+        return plural(n, "duplicate face", "duplicate faces");
     const Defects was = findDefects(before.faces, sortedEdgeUses(before.faces), vertexCount);
     const Defects is = findDefects(after.faces, sortedEdgeUses(after.faces), vertexCount);
     if (const int64_t n = is.nonManifoldEdges - was.nonManifoldEdges; n > 0)
@@ -250,7 +253,8 @@ std::string harmOfWelding(const Triangles& before, const Triangles& after, int v
     return {};
 }
 
-Triangles welded(const PolygonSoup& soup, const std::vector<Triangle>& triangles, Weld weld, RepairReport& report)
+Triangles welded(const PolygonSoup& soup, const std::vector<Triangle>& triangles, Weld weld,
+                 RepairReport& report)
 {
     Triangles asIndexed = cleaned(triangles);
     if (weld == Weld::Never) return asIndexed;
@@ -265,8 +269,8 @@ Triangles welded(const PolygonSoup& soup, const std::vector<Triangle>& triangles
     return joined;
 }
 
-/// Faces of every component, the largest first, else in file order. Connected means across edges: parts that merely
-/// touch in a vertex are no surface together.
+/// Faces of every component, the largest first, else in file order. Connected means across edges: parts that
+/// merely touch in a vertex are no surface together.
 std::vector<std::vector<int>> components(const std::vector<Triangle>& faces, const std::vector<EdgeUse>& uses)
 {
     DisjointSets sets(faces.size());
@@ -283,7 +287,8 @@ std::vector<std::vector<int>> components(const std::vector<Triangle>& faces, con
         }
         result[index].push_back(f);
     }
-    std::stable_sort(result.begin(), result.end(), [](const auto& a, const auto& b) { return a.size() > b.size(); });
+    std::stable_sort(result.begin(), result.end(),
+                     [](const auto& a, const auto& b) { return a.size() > b.size(); });
     return result;
 }
 
@@ -316,32 +321,39 @@ std::string place(const PolygonSoup& soup, int v)
 
 std::string edgeName(const PolygonSoup& soup, int a, int b)
 {
-    const std::string numbers = std::to_string(a + soup.firstNumber) + "-" + std::to_string(b + soup.firstNumber);
-    return soup.indexed ? numbers : numbers + place(soup, a) + " to" + place(soup, b).substr(3); // STL shows no numbers
+    const std::string numbers =
+        std::to_string(a + soup.firstNumber) + "-" + std::to_string(b + soup.firstNumber);
+    return soup.indexed ? numbers
+                        : numbers + place(soup, a) + " to" + place(soup, b).substr(3); // STL shows no numbers
 }
 
-Status refusal(const PolygonSoup& soup, const std::vector<Triangle>& faces, const Defects& defects)
+Status finite(const PolygonSoup& soup, const std::vector<Triangle>& faces)
 {
     std::vector<int> infinite;
     for (const Triangle& t : faces)
         for (int v : t)
             if (!soup.positions[v].allFinite()) infinite.push_back(v);
-    if (!infinite.empty()) {
-        std::sort(infinite.begin(), infinite.end());
-        infinite.erase(std::unique(infinite.begin(), infinite.end()), infinite.end());
-        return Error{ErrorKind::NotFinite, "vertex " + std::to_string(infinite.front() + soup.firstNumber) +
-                                               " is not finite" + place(soup, infinite.front()) +
-                                               more(static_cast<int64_t>(infinite.size()), "vertex", "vertices")};
-    }
+    if (infinite.empty()) return Done{};
+    std::sort(infinite.begin(), infinite.end());
+    infinite.erase(std::unique(infinite.begin(), infinite.end()), infinite.end());
+    return Error{ErrorKind::NotFinite, "vertex " + std::to_string(infinite.front() + soup.firstNumber) +
+                                           " is not finite" + place(soup, infinite.front()) +
+                                           more(static_cast<int64_t>(infinite.size()), "vertex", "vertices")};
+}
+
+Status manifold(const PolygonSoup& soup, const Defects& defects)
+{
     if (defects.nonManifoldEdges > 0)
-        return Error{ErrorKind::NonManifoldEdge, "non-manifold edge " + edgeName(soup, defects.edgeA, defects.edgeB) +
-                                                     ": " + std::to_string(defects.edgeFaces) + " faces" +
+        return Error{ErrorKind::NonManifoldEdge, "non-manifold edge " +
+                                                     edgeName(soup, defects.edgeA, defects.edgeB) + ": " +
+                                                     std::to_string(defects.edgeFaces) + " faces" +
                                                      more(defects.nonManifoldEdges, "edge", "edges")};
     if (defects.nonManifoldVertices > 0)
         return Error{ErrorKind::NonManifoldVertex,
                      "non-manifold vertex " + std::to_string(defects.vertex + soup.firstNumber) +
                          place(soup, defects.vertex) + ": " + std::to_string(defects.vertexFans) +
-                         " fans of faces meet only there" + more(defects.nonManifoldVertices, "vertex", "vertices")};
+                         " fans of faces meet only there" +
+                         more(defects.nonManifoldVertices, "vertex", "vertices")};
     if (!defects.orientable)
         return Error{ErrorKind::NotOrientable, "not orientable: the two faces at edge " +
                                                    edgeName(soup, defects.conflictA, defects.conflictB) +
@@ -368,7 +380,8 @@ int64_t orient(const PolygonSoup& soup, std::vector<Triangle>& faces, std::vecto
             if (flip[f]) std::swap(faces[f][1], faces[f][2]);
     };
     apply();
-    const bool reverse = closed ? signedVolume(soup, faces) < 0 : 2 * flips > static_cast<int64_t>(faces.size());
+    const bool reverse =
+        closed ? signedVolume(soup, faces) < 0 : 2 * flips > static_cast<int64_t>(faces.size());
     if (!reverse) return flips;
     flips = static_cast<int64_t>(faces.size()) - flips;
     flip.assign(faces.size(), true);
@@ -429,6 +442,8 @@ Result<MeshFile> repaired(const PolygonSoup& soup, const ReadOptions& options)
     std::vector<EdgeUse> uses = sortedEdgeUses(faces);
     const std::vector<std::vector<int>> parts = components(faces, uses);
     report.components = static_cast<int64_t>(parts.size());
+    if (!options.largestComponent)
+        if (const Status status = finite(soup, faces); !status) return status.error();
     if (parts.size() > 1) {
         if (!options.largestComponent) return severalComponents(parts, report);
         std::vector<Triangle> chosen;
@@ -438,8 +453,9 @@ Result<MeshFile> repaired(const PolygonSoup& soup, const ReadOptions& options)
         uses = sortedEdgeUses(faces);
     }
 
+    if (const Status status = finite(soup, faces); !status) return status.error();
     Defects defects = findDefects(faces, uses, vertexCount);
-    if (const Status status = refusal(soup, faces, defects); !status) return status.error();
+    if (const Status status = manifold(soup, defects); !status) return status.error();
     report.flippedFaces = orient(soup, faces, std::move(defects.flip), defects.closed);
     for (const Triangle& t : faces) {
         const Vec3& p = soup.positions[t[0]];

@@ -24,9 +24,7 @@ public:
         return *this;
     }
     /// The shortest decimal that reads back as the same value.
-    template <class Number>
-    Output& operator<<(Number value)
-        requires(std::is_arithmetic_v<Number>)
+    template <class Number> Output& operator<<(Number value) requires(std::is_arithmetic_v<Number>)
     {
         char digits[32];
         const auto [end, failure] = std::to_chars(digits, digits + sizeof digits, value);
@@ -89,7 +87,8 @@ void writePly(const Mesh& mesh, std::span<const Vec3> normals, Encoding encoding
             : encoding == Encoding::Binary ? "binary_little_endian"
                                            : "binary_big_endian")
         << " 1.0\nelement vertex " << mesh.vertexCount() << "\n";
-    for (const char* axis : {"x", "y", "z"}) out << "property " << (isFloat ? "float " : "double ") << axis << "\n";
+    for (const char* axis : {"x", "y", "z"})
+        out << "property " << (isFloat ? "float " : "double ") << axis << "\n";
     if (!normals.empty())
         for (const char* axis : {"nx", "ny", "nz"}) out << "property float " << axis << "\n";
     out << "element face " << mesh.faceCount() << "\nproperty list uchar int vertex_indices\nend_header\n";
@@ -103,8 +102,10 @@ void writePly(const Mesh& mesh, std::span<const Vec3> normals, Encoding encoding
             continue;
         }
         for (double x : mesh.positions[v]) {
-            if (isFloat) out.binary(static_cast<float>(x));
-            else out.binary(x);
+            if (isFloat)
+                out.binary(static_cast<float>(x));
+            else
+                out.binary(x);
         }
         if (!normals.empty())
             for (double x : normals[v]) out.binary(static_cast<float>(x));
@@ -122,7 +123,8 @@ void writePly(const Mesh& mesh, std::span<const Vec3> normals, Encoding encoding
 void writeStl(const Mesh& mesh, Encoding encoding, Output& out)
 {
     using Vec3f = Eigen::Vector3f;
-    if (encoding == Encoding::Ascii) out << "solid mesh\n";
+    if (encoding == Encoding::Ascii)
+        out << "solid mesh\n";
     else {
         std::string header = "binary STL"; // a text file is one that starts with "solid"
         header.resize(80, ' ');
@@ -158,8 +160,9 @@ Status checked(const Mesh& mesh, MeshFormat format, std::span<const Vec3> normal
     for (size_t f = 0; f < mesh.faces.size(); ++f)
         for (int v : mesh.faces[f])
             if (v < 0 || v >= mesh.vertexCount())
-                return Error{ErrorKind::BadArgument, "face " + std::to_string(f) + " names vertex " + std::to_string(v) +
-                                                         " of " + std::to_string(mesh.vertexCount())};
+                return Error{ErrorKind::BadArgument, "face " + std::to_string(f) + " names vertex " +
+                                                         std::to_string(v) + " of " +
+                                                         std::to_string(mesh.vertexCount())};
     if (!normals.empty() && normals.size() != mesh.positions.size())
         return Error{ErrorKind::BadArgument, std::to_string(normals.size()) + " normals for " +
                                                  std::to_string(mesh.vertexCount()) + " vertices"};
@@ -185,10 +188,18 @@ try {
 
     Output out(encoding == Encoding::BinaryBigEndian);
     switch (*format) {
-    case MeshFormat::Obj: writeObj(mesh, normals, out); break;
-    case MeshFormat::Ply: writePly(mesh, normals, encoding, out); break;
-    case MeshFormat::Off: writeOff(mesh, normals, out); break;
-    case MeshFormat::Stl: writeStl(mesh, encoding, out); break;
+    case MeshFormat::Obj:
+        writeObj(mesh, normals, out);
+        break;
+    case MeshFormat::Ply:
+        writePly(mesh, normals, encoding, out);
+        break;
+    case MeshFormat::Off:
+        writeOff(mesh, normals, out);
+        break;
+    case MeshFormat::Stl:
+        writeStl(mesh, encoding, out);
+        break;
     }
     std::ofstream file(path, std::ios::binary);
     file.write(out.bytes().data(), static_cast<std::streamsize>(out.bytes().size()));

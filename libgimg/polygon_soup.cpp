@@ -34,10 +34,14 @@ Result<std::string> fileBytes(const std::string& path)
 Result<PolygonSoup> parse(MeshFormat format, std::string_view bytes)
 {
     switch (format) {
-    case MeshFormat::Obj: return parseObj(bytes);
-    case MeshFormat::Ply: return parsePly(bytes);
-    case MeshFormat::Off: return parseOff(bytes);
-    case MeshFormat::Stl: return parseStl(bytes);
+    case MeshFormat::Obj:
+        return parseObj(bytes);
+    case MeshFormat::Ply:
+        return parsePly(bytes);
+    case MeshFormat::Off:
+        return parseOff(bytes);
+    case MeshFormat::Stl:
+        return parseStl(bytes);
     }
     return Error{ErrorKind::FormatUnknown, "unknown mesh format"};
 }

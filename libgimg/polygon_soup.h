@@ -40,8 +40,8 @@ struct PolygonSoup
     void endFace() { faceStart.push_back(corners.size()); }
 };
 
-/// Parses a whole file strictly: whatever contradicts its format or its own counts is an error, and nothing is
-/// allocated from a count before the bytes behind it are known to exist.
+/// Parses a whole file strictly: whatever contradicts its format or its own counts is an error, and nothing
+/// is allocated from a count before the bytes behind it are known to exist.
 Result<PolygonSoup> readPolygonSoup(const std::string& path);
 
 } // namespace gimg

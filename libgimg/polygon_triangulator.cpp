@@ -19,7 +19,8 @@ uint64_t edgeKey(int a, int b)
     return static_cast<uint64_t>(low) << 32 | static_cast<uint32_t>(high);
 }
 
-/// Smaller is better: first the diagonals that double an edge, then area, then length to break ties among flat ones.
+/// Smaller is better: first the diagonals that double an edge, then area, then length to break ties among
+/// flat ones.
 struct Cost
 {
     int doubled = 0;
@@ -44,7 +45,8 @@ PolygonTriangulator::PolygonTriangulator(const PolygonSoup& soup) : soup_(soup)
     if (soup.corners.size() == 3 * soup.faceCount()) return; // triangles only: there will be no diagonals
     for (size_t f = 0; f < soup.faceCount(); ++f) {
         const std::span<const int> face = soup.face(f);
-        for (size_t k = 0; k < face.size(); ++k) edges_.push_back(edgeKey(face[k], face[(k + 1) % face.size()]));
+        for (size_t k = 0; k < face.size(); ++k)
+            edges_.push_back(edgeKey(face[k], face[(k + 1) % face.size()]));
     }
     std::sort(edges_.begin(), edges_.end());
     edges_.erase(std::unique(edges_.begin(), edges_.end()), edges_.end());
@@ -70,8 +72,10 @@ void PolygonTriangulator::append(std::span<const int> polygon, std::vector<Trian
         if (!ring_.empty()) triangles.push_back({ring_.front(), ring_.back(), ring_.back()});
         return;
     }
-    if (ring_.size() <= kLargestProgrammed) leastArea(triangles);
-    else clipEars(triangles);
+    if (ring_.size() <= kLargestProgrammed)
+        leastArea(triangles);
+    else
+        clipEars(triangles);
 }
 
 void PolygonTriangulator::leastArea(std::vector<Triangle>& triangles)

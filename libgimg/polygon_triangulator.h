@@ -7,17 +7,17 @@
 
 namespace gimg {
 
-/// Cuts polygons into triangles that use each polygon edge once and no other boundary: warped polygons get the
-/// triangulation of least area, flat ones the shortest diagonals, so none leaves a non-convex polygon where that can
-/// be helped; and no diagonal doubles an edge of the mesh where that can be helped.
+/// Cuts polygons into triangles that use each polygon edge once and no other boundary: warped polygons get
+/// the triangulation of least area, flat ones the shortest diagonals, so none leaves a non-convex polygon
+/// where that can be helped; and no diagonal doubles an edge of the mesh where that can be helped.
 /// Source: dynamic programming as in Barequet and Sharir 1995; ear clipping for polygons above 32 corners.
 class PolygonTriangulator
 {
 public:
     explicit PolygonTriangulator(const PolygonSoup& soup);
 
-    /// Appends the triangles of one face. Corners equal to their predecessor count once; fewer than three corners
-    /// give the one triangle that repeats a vertex, so that the caller can count it.
+    /// Appends the triangles of one face. Corners equal to their predecessor count once; fewer than three
+    /// corners give the one triangle that repeats a vertex, so that the caller can count it.
     void append(std::span<const int> polygon, std::vector<Triangle>& triangles);
 
 private:

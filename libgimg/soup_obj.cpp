@@ -82,7 +82,8 @@ private:
     {
         const std::string line = "line " + std::to_string(scan_.line());
         if (problem_.empty() && scan_.onLastLine())
-            return {ErrorKind::FileTruncated, "the file ends within the '" + std::string(key) + "' of " + line};
+            return {ErrorKind::FileTruncated,
+                    "the file ends within the '" + std::string(key) + "' of " + line};
         const std::string count = key == "v"   ? "vertex " + std::to_string(soup_.positions.size() + 1) + " "
                                   : key == "f" ? "face " + std::to_string(soup_.faceCount() + 1) + " "
                                                : "";

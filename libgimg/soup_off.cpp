@@ -1,5 +1,5 @@
-// Object File Format: OFF with any of the prefixes ST, C and N, text. One vertex or face a line, so that whatever
-// follows the coordinates or indices (normals, colours, texture coordinates) can be passed over.
+// Object File Format: OFF with any of the prefixes ST, C and N, text. One vertex or face a line, so that
+// whatever follows the coordinates or indices (normals, colours, texture coordinates) can be passed over.
 #include "soup_parsers.h"
 #include "text_scan.h"
 
@@ -31,7 +31,8 @@ public:
         const std::optional<int64_t> vertices = integer(first);
         const std::optional<int64_t> faces = integer(scan_.token());
         if (!vertices || !faces || *vertices < 0 || *faces < 0)
-            return Error{ErrorKind::FileCorrupt, "line " + std::to_string(scan_.line()) + ": no element counts"};
+            return Error{ErrorKind::FileCorrupt,
+                         "line " + std::to_string(scan_.line()) + ": no element counts"};
         scan_.nextLine();
 
         for (int64_t i = 0; i < *vertices; ++i)
@@ -75,8 +76,9 @@ private:
     {
         const std::string element = what;
         if (scan_.onLastLine())
-            return {ErrorKind::FileTruncated, "the file ends at " + element + " " + std::to_string(done) + ", the header promises " +
-                                                  std::to_string(count) + " of them"};
+            return {ErrorKind::FileTruncated, "the file ends at " + element + " " + std::to_string(done) +
+                                                  ", the header promises " + std::to_string(count) +
+                                                  " of them"};
         return {ErrorKind::FileCorrupt, "line " + std::to_string(scan_.line()) + ": " + element + " " +
                                             std::to_string(done) + " is malformed"};
     }

@@ -1,5 +1,5 @@
-// PLY 1.0, text and binary of either byte order. Elements and properties other than the coordinates and the vertex
-// indices are passed over, wherever they stand.
+// PLY 1.0, text and binary of either byte order. Elements and properties other than the coordinates and the
+// vertex indices are passed over, wherever they stand.
 #include "soup_parsers.h"
 #include "text_scan.h"
 
@@ -26,8 +26,8 @@ enum class Scalar
 
 std::optional<Scalar> scalarType(std::string_view name)
 {
-    constexpr std::string_view names[][2] = {{"char", "int8"},   {"uchar", "uint8"}, {"short", "int16"},
-                                             {"ushort", "uint16"}, {"int", "int32"},   {"uint", "uint32"},
+    constexpr std::string_view names[][2] = {{"char", "int8"},     {"uchar", "uint8"},   {"short", "int16"},
+                                             {"ushort", "uint16"}, {"int", "int32"},     {"uint", "uint32"},
                                              {"float", "float32"}, {"double", "float64"}};
     for (int i = 0; i < 8; ++i)
         if (name == names[i][0] || name == names[i][1]) return static_cast<Scalar>(i);
@@ -86,12 +86,16 @@ public:
         const std::string_view t = scan_.token();
         if (t.empty()) return Stop::Ended;
         const std::optional<double> parsed = number(t);
-        if (!parsed) return scan_.remaining() == 0 ? Stop::Ended : Stop::Malformed; // the last token may be half a one
+        if (!parsed)
+            return scan_.remaining() == 0 ? Stop::Ended : Stop::Malformed; // the last token may be half a one
         value = *parsed;
         return Stop::None;
     }
     // A scalar takes a character and a separator, which the very last one may lack.
-    bool mayHold(int64_t scalars, size_t) const { return scalars <= static_cast<int64_t>(scan_.remaining() / 2 + 1); }
+    bool mayHold(int64_t scalars, size_t) const
+    {
+        return scalars <= static_cast<int64_t>(scan_.remaining() / 2 + 1);
+    }
     size_t trailing()
     {
         const std::string_view t = scan_.token();
@@ -116,12 +120,24 @@ public:
             bits = bits << 8 | static_cast<unsigned char>(bytes_[kBigEndian ? k : size - 1 - k]);
         bytes_.remove_prefix(size);
         switch (type) {
-        case Scalar::Int8: value = static_cast<int8_t>(bits); break;
-        case Scalar::Int16: value = static_cast<int16_t>(bits); break;
-        case Scalar::Int32: value = static_cast<int32_t>(bits); break;
-        case Scalar::Float32: value = double{std::bit_cast<float>(static_cast<uint32_t>(bits))}; break;
-        case Scalar::Float64: value = std::bit_cast<double>(bits); break;
-        default: value = static_cast<double>(bits); break;
+        case Scalar::Int8:
+            value = static_cast<int8_t>(bits);
+            break;
+        case Scalar::Int16:
+            value = static_cast<int16_t>(bits);
+            break;
+        case Scalar::Int32:
+            value = static_cast<int32_t>(bits);
+            break;
+        case Scalar::Float32:
+            value = double{std::bit_cast<float>(static_cast<uint32_t>(bits))};
+            break;
+        case Scalar::Float64:
+            value = std::bit_cast<double>(bits);
+            break;
+        default:
+            value = static_cast<double>(bits);
+            break;
         }
         return Stop::None;
     }
@@ -148,10 +164,14 @@ Result<Header> parseHeader(std::string_view bytes)
         if (key == "end_header") break;
         if (key == "format") {
             const std::string_view storage = scan.lineToken();
-            if (storage == "ascii") header.storage = Storage::Text;
-            else if (storage == "binary_little_endian") header.storage = Storage::LittleEndian;
-            else if (storage == "binary_big_endian") header.storage = Storage::BigEndian;
-            else return corrupt(scan.line(), "unknown format '" + std::string(storage.substr(0, 40)) + "'");
+            if (storage == "ascii")
+                header.storage = Storage::Text;
+            else if (storage == "binary_little_endian")
+                header.storage = Storage::LittleEndian;
+            else if (storage == "binary_big_endian")
+                header.storage = Storage::BigEndian;
+            else
+                return corrupt(scan.line(), "unknown format '" + std::string(storage.substr(0, 40)) + "'");
             if (scan.lineToken() != "1.0") return corrupt(scan.line(), "only version 1.0 is known");
             formatKnown = true;
         } else if (key == "element") {
@@ -179,8 +199,10 @@ Result<Header> parseHeader(std::string_view bytes)
         }
     }
     if (!formatKnown) return Error{ErrorKind::FileCorrupt, "the header names no format"};
-    if (!scan.nextLine()) header.size = bytes.size();
-    else header.size = bytes.size() - scan.remaining();
+    if (!scan.nextLine())
+        header.size = bytes.size();
+    else
+        header.size = bytes.size() - scan.remaining();
     return header;
 }
 
@@ -201,7 +223,8 @@ public:
             const int64_t scalars = e.count * static_cast<int64_t>(e.properties.size());
             if (!body_.mayHold(scalars, static_cast<size_t>(e.count) * size))
                 return Error{ErrorKind::FileTruncated, "the header promises " + std::to_string(e.count) +
-                                                           " of element " + e.name + ", more than the file can hold"};
+                                                           " of element " + e.name +
+                                                           ", more than the file can hold"};
             if (isVertex_) soup_.positions.reserve(static_cast<size_t>(e.count));
             if (isFace_) {
                 soup_.corners.reserve(3 * static_cast<size_t>(e.count));
@@ -212,7 +235,8 @@ public:
                 if (stop == Stop::None) continue;
                 const std::string name = e.name + " " + std::to_string(i);
                 if (stop == Stop::Malformed) return Error{ErrorKind::FileCorrupt, name + " is malformed"};
-                return Error{ErrorKind::FileTruncated, "the file ends within " + name + ", the header promises " +
+                return Error{ErrorKind::FileTruncated, "the file ends within " + name +
+                                                           ", the header promises " +
                                                            std::to_string(e.count) + " of them"};
             }
         }
@@ -232,7 +256,8 @@ private:
         for (size_t p = 0; p < e.properties.size(); ++p) {
             const Property& property = e.properties[p];
             for (int k = 0; k < 3; ++k)
-                if (isVertex_ && !property.countType && property.name == std::string(1, static_cast<char>('x' + k))) {
+                if (isVertex_ && !property.countType &&
+                    property.name == std::string(1, static_cast<char>('x' + k))) {
                     axis_[k] = p;
                     found[k] = true;
                 }
@@ -264,7 +289,8 @@ private:
             for (int64_t i = 0, n = static_cast<int64_t>(value); i < n; ++i) {
                 if (const Stop stop = body_.read(property.type, value); stop != Stop::None) return stop;
                 if (!keep) continue;
-                if (!(value >= INT_MIN && value <= INT_MAX) || value != std::floor(value)) return Stop::Malformed;
+                if (!(value >= INT_MIN && value <= INT_MAX) || value != std::floor(value))
+                    return Stop::Malformed;
                 soup_.corners.push_back(static_cast<int>(value));
             }
             if (keep) soup_.endFace();
@@ -289,9 +315,12 @@ Result<PolygonSoup> parsePly(std::string_view bytes)
     if (!header) return header.error();
     const std::string_view body = bytes.substr(header->size);
     switch (header->storage) {
-    case Storage::LittleEndian: return BodyParser<BinaryBody<false>>(body).parse(header->elements);
-    case Storage::BigEndian: return BodyParser<BinaryBody<true>>(body).parse(header->elements);
-    case Storage::Text: break;
+    case Storage::LittleEndian:
+        return BodyParser<BinaryBody<false>>(body).parse(header->elements);
+    case Storage::BigEndian:
+        return BodyParser<BinaryBody<true>>(body).parse(header->elements);
+    case Storage::Text:
+        break;
     }
     Result<PolygonSoup> soup = BodyParser<TextBody>(body).parse(header->elements);
     if (soup) soup->lastLineOpen = bytes.back() != '\n' && bytes.back() != '\r';

@@ -1,4 +1,5 @@
-// Stereolithography: text or binary facets, each with three vertices of its own. The facet normal is not needed.
+// Stereolithography: text or binary facets, each with three vertices of its own. The facet normal is not
+// needed.
 #include "soup_parsers.h"
 #include "text_scan.h"
 
@@ -26,8 +27,9 @@ Result<PolygonSoup> parseBinary(std::string_view bytes)
     const size_t facets = littleEndian32(bytes.data() + 80);
     const size_t held = (bytes.size() - kHeaderSize) / kFacetSize;
     if (held < facets)
-        return Error{ErrorKind::FileTruncated, "the file ends within facet " + std::to_string(held) + ", the header promises " +
-                                                   std::to_string(facets) + " of them"};
+        return Error{ErrorKind::FileTruncated, "the file ends within facet " + std::to_string(held) +
+                                                   ", the header promises " + std::to_string(facets) +
+                                                   " of them"};
     PolygonSoup soup;
     soup.indexed = false;
     soup.trailingBytes = bytes.size() - kHeaderSize - facets * kFacetSize;
@@ -98,7 +100,8 @@ private:
         const std::string facet = "facet " + std::to_string(soup_.faceCount());
         if (scan_.onLastLine())
             return {ErrorKind::FileTruncated, "the file ends at " + facet + ", before 'endsolid'"};
-        return {ErrorKind::FileCorrupt, "line " + std::to_string(scan_.line()) + ": " + facet + " is malformed"};
+        return {ErrorKind::FileCorrupt,
+                "line " + std::to_string(scan_.line()) + ": " + facet + " is malformed"};
     }
 
     TextScanner scan_;

@@ -9,8 +9,8 @@
 
 namespace gimg {
 
-/// Walks over a text in memory token by token. Lines end with LF, CRLF or CR; a backslash before a line end joins
-/// two lines; a token that starts with '#' hides the rest of its line.
+/// Walks over a text in memory token by token. Lines end with LF, CRLF or CR; a backslash before a line end
+/// joins two lines; a token that starts with '#' hides the rest of its line.
 class TextScanner
 {
 public:
@@ -93,8 +93,8 @@ inline std::optional<double> number(std::string_view token)
     if (token.empty() || end != token.data() + token.size()) return std::nullopt;
     if (failure == std::errc::result_out_of_range) {
         const size_t exponent = token.find_first_of("eE");
-        const bool tiny = exponent == token.npos ? token.find('.') <= 2
-                                                 : token.substr(exponent + 1).starts_with('-');
+        const bool tiny =
+            exponent == token.npos ? token.find('.') <= 2 : token.substr(exponent + 1).starts_with('-');
         return tiny ? 0.0 : std::numeric_limits<double>::infinity();
     }
     return value;

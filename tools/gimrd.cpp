@@ -37,9 +37,7 @@ bool printJson(const SurfaceDistance& d)
 
 bool printText(const SurfaceDistance& d)
 {
-    const auto at = [](const gimg::Vec3& p) {
-        std::printf("   at (%.6g, %.6g, %.6g)\n", p[0], p[1], p[2]);
-    };
+    const auto at = [](const gimg::Vec3& p) { std::printf("   at (%.6g, %.6g, %.6g)\n", p[0], p[1], p[2]); };
     std::printf("diagonal          %.6g\n", d.diagonal);
     std::printf("rms ref to test   %.6g\n", d.rmsRefToTest);
     std::printf("rms test to ref   %.6g\n", d.rmsTestToRef);
@@ -48,8 +46,10 @@ bool printText(const SurfaceDistance& d)
     std::printf("max test to ref   %.6g", d.maxTestToRef);
     at(d.maxTestToRefAt);
     std::printf("hausdorff         %.6g\n", d.hausdorff());
-    if (std::isinf(d.psnr())) std::printf("psnr              inf\n");
-    else std::printf("psnr              %.2f dB\n", d.psnr());
+    if (std::isinf(d.psnr()))
+        std::printf("psnr              inf\n");
+    else
+        std::printf("psnr              %.2f dB\n", d.psnr());
     return std::fflush(stdout) == 0;
 }
 
@@ -76,7 +76,8 @@ int main(int argc, char** argv)
     CompareOptions options;
     CLI::App* sub = app.add_subcommand("compare", "Distance between two surfaces, both ways, and PSNR");
     sub->add_option("REF", options.reference, "Reference mesh (.obj, .ply, .off, .stl)")->required();
-    sub->add_option("TEST", options.test, "Mesh to compare with it; its topology does not matter")->required();
+    sub->add_option("TEST", options.test, "Mesh to compare with it; its topology does not matter")
+        ->required();
     sub->add_option("--samples", options.distance.samples, "Samples on each surface")
         ->check(CLI::Range(1, 100000000))
         ->capture_default_str();

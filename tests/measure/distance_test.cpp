@@ -34,7 +34,8 @@ Mesh randomTriangles(int count, unsigned seed)
         const Vec3 p(place(random), place(random), place(random));
         const double size = f % 3 ? 0.2 : 1e-4; // small ones among large ones, and slivers
         for (int k = 0; k < 3; ++k)
-            mesh.positions.push_back(p + size * Vec3(place(random), place(random), f % 5 ? place(random) : 0));
+            mesh.positions.push_back(p +
+                                     size * Vec3(place(random), place(random), f % 5 ? place(random) : 0));
         if (f % 7 == 0) mesh.positions.back() = (mesh.positions[3 * f] + mesh.positions[3 * f + 1]) / 2;
         if (f % 11 == 0) mesh.positions.back() = mesh.positions[3 * f];
         mesh.faces.push_back({3 * f, 3 * f + 1, 3 * f + 2});
@@ -62,7 +63,8 @@ double bruteForceDistance(const Vec3& q, const Mesh& mesh)
 {
     double best = std::numeric_limits<double>::infinity();
     for (const Triangle& t : mesh.faces)
-        best = std::min(best, bruteForceDistance(q, mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]));
+        best = std::min(
+            best, bruteForceDistance(q, mesh.positions[t[0]], mesh.positions[t[1]], mesh.positions[t[2]]));
     return best;
 }
 
@@ -106,7 +108,8 @@ TEST(SurfaceDistance, OfASquareAndItsHalfIsOneSided)
 
 TEST(SurfaceDistance, OfASurfaceToItselfIsZero)
 {
-    for (const Mesh& mesh : {test::sphere(3, 4), randomTriangles(200, 5), moved(test::torus(2, 1, 30, 20), {1e4, 0, 0})}) {
+    for (const Mesh& mesh :
+         {test::sphere(3, 4), randomTriangles(200, 5), moved(test::torus(2, 1, 30, 20), {1e4, 0, 0})}) {
         const SurfaceDistance d = compare(mesh, mesh, {.samples = 20000});
         EXPECT_EQ(d.rms(), 0);
         EXPECT_EQ(d.hausdorff(), 0);
@@ -118,7 +121,8 @@ TEST(SurfaceDistance, SamplesSpreadEvenlyOverTheArea)
 {
     // One big and many small triangles of the same area as it: how they are cut must not matter.
     const Mesh coarse = test::square(1), fine = test::square(60);
-    Mesh wedge{{{0, 0, 0}, {0, 1, 0}, {1, 0, 1}, {1, 1, 1}}, {{0, 2, 1}, {1, 2, 3}}}; // height x above the square
+    Mesh wedge{{{0, 0, 0}, {0, 1, 0}, {1, 0, 1}, {1, 1, 1}},
+               {{0, 2, 1}, {1, 2, 3}}}; // height x above the square
     EXPECT_NEAR(compare(coarse, wedge).rmsRefToTest, std::sqrt(1.0 / 3) / std::sqrt(2.0), 2e-4);
     EXPECT_NEAR(compare(fine, wedge).rmsRefToTest, std::sqrt(1.0 / 3) / std::sqrt(2.0), 2e-4);
 }

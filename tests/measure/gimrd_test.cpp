@@ -42,7 +42,8 @@ TEST_F(Gimrd, CompareWritesJson)
 {
     Mesh shifted = test::square(2);
     for (Vec3& p : shifted.positions) p[2] += 0.5;
-    const Ended ended = run("compare --json --samples 1000 --threads 1" + mesh("a.ply", test::square(2)) + mesh("b.obj", shifted));
+    const Ended ended = run("compare --json --samples 1000 --threads 1" + mesh("a.ply", test::square(2)) +
+                            mesh("b.obj", shifted));
     ASSERT_EQ(ended.code, 0) << ended.err;
     const auto json = nlohmann::json::parse(ended.out);
     EXPECT_DOUBLE_EQ(json.at("diagonal"), std::sqrt(2));
@@ -66,8 +67,9 @@ TEST_F(Gimrd, AgreementIsNullInJsonAndInfInText)
 
 TEST_F(Gimrd, TopologyOfTheTestMeshDoesNotMatter)
 {
-    const std::string fan = write("fan.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 5 5 5\nv 6 5 5\nv 5 6 5\n"
-                                             "f 1 2 3\nf 1 2 4\nf 1 2 5\nf 6 7 8\n");
+    const std::string fan =
+        write("fan.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv 5 5 5\nv 6 5 5\nv 5 6 5\n"
+                         "f 1 2 3\nf 1 2 4\nf 1 2 5\nf 6 7 8\n");
     EXPECT_EQ(run("compare --samples 100" + mesh("a.ply", test::square(2)) + " '" + fan + "'").code, 0);
 }
 

@@ -36,12 +36,14 @@ Png readPng(const std::string& path)
     png_infop info = png_create_info_struct(png);
     png_init_io(png, file);
     png_read_png(png, info, PNG_TRANSFORM_IDENTITY, nullptr);
-    Png image{png_get_image_width(png, info), png_get_image_height(png, info), png_get_bit_depth(png, info), {}};
+    Png image{
+        png_get_image_width(png, info), png_get_image_height(png, info), png_get_bit_depth(png, info), {}};
     EXPECT_EQ(png_get_color_type(png, info), PNG_COLOR_TYPE_RGB);
     png_bytepp rows = png_get_rows(png, info);
     for (unsigned y = 0; y < image.height; ++y)
         for (unsigned i = 0; i < 3 * image.width; ++i)
-            image.samples.push_back(image.bits == 16 ? unsigned{rows[y][2 * i]} << 8 | rows[y][2 * i + 1] : rows[y][i]);
+            image.samples.push_back(image.bits == 16 ? unsigned{rows[y][2 * i]} << 8 | rows[y][2 * i + 1]
+                                                     : rows[y][i]);
     png_destroy_read_struct(&png, &info, nullptr);
     std::fclose(file);
     return image;
@@ -66,12 +68,14 @@ TEST_F(ImageIo, PngIsScaledFromTheBoundingCube)
     EXPECT_EQ(deep.width, 2U);
     EXPECT_EQ(deep.height, 3U);
     EXPECT_EQ(deep.bits, 16);
-    EXPECT_THAT(deep.samples, ElementsAre(0, 0, 0, 65535, 16384, 0, 32768, 32768, 0, 16384, 0, 16384, 0, 32768, 16384, 49151, 16384, 8192));
+    EXPECT_THAT(deep.samples, ElementsAre(0, 0, 0, 65535, 16384, 0, 32768, 32768, 0, 16384, 0, 16384, 0,
+                                          32768, 16384, 49151, 16384, 8192));
 
     ASSERT_TRUE(writePng8(smallImage(), path("b.png")).ok());
     const Png flat = readPng(path("b.png"));
     EXPECT_EQ(flat.bits, 8);
-    EXPECT_THAT(flat.samples, ElementsAre(0, 0, 0, 255, 64, 0, 128, 128, 0, 64, 0, 64, 0, 128, 64, 191, 64, 32));
+    EXPECT_THAT(flat.samples,
+                ElementsAre(0, 0, 0, 255, 64, 0, 128, 128, 0, 64, 0, 64, 0, 128, 64, 191, 64, 32));
 }
 
 TEST_F(ImageIo, AnImageWithoutExtentIsBlack)
@@ -89,7 +93,8 @@ TEST_F(ImageIo, NormalsAreMappedFromMinusOneToOne)
 TEST_F(ImageIo, ExrKeepsEveryBit)
 {
     FloatImage image{3, 2, {}};
-    for (int i = 0; i < 18; ++i) image.samples.push_back(std::ldexp(1.0F + static_cast<float>(i) * 0x1p-23F, 5 * i - 40));
+    for (int i = 0; i < 18; ++i)
+        image.samples.push_back(std::ldexp(1.0F + static_cast<float>(i) * 0x1p-23F, 5 * i - 40));
     image.samples[3] = -0.0F;
     image.samples[4] = std::numeric_limits<float>::denorm_min();
     image.samples[5] = std::numeric_limits<float>::infinity();
@@ -115,7 +120,9 @@ TEST_F(ImageIo, ExrOfOtherProgramsHasWindowsAndHalfs)
     size_t c = 0;
     for (const char* name : {"R", "G", "B", "A"}) {
         header.channels().insert(name, Imf::Channel(Imf::HALF));
-        buffer.insert(name, Imf::Slice(Imf::HALF, reinterpret_cast<char*>(samples.data() + c++) - (-3 * 8 + 5 * 16), 8, 16));
+        buffer.insert(
+            name,
+            Imf::Slice(Imf::HALF, reinterpret_cast<char*>(samples.data() + c++) - (-3 * 8 + 5 * 16), 8, 16));
     }
     {
         Imf::OutputFile file(path("a.exr").c_str(), header);
@@ -127,7 +134,8 @@ TEST_F(ImageIo, ExrOfOtherProgramsHasWindowsAndHalfs)
     ASSERT_EQ(image->width, 2);
     ASSERT_EQ(image->height, 3);
     for (int pixel = 0; pixel < 6; ++pixel)
-        for (int k = 0; k < 3; ++k) EXPECT_EQ(image->at(pixel % 2, pixel / 2, k), static_cast<float>(4 * pixel + k) / 4);
+        for (int k = 0; k < 3; ++k)
+            EXPECT_EQ(image->at(pixel % 2, pixel / 2, k), static_cast<float>(4 * pixel + k) / 4);
 }
 
 TEST_F(ImageIo, DamagedExrIsRefused)
@@ -157,7 +165,9 @@ TEST_F(ImageIo, DamagedExrIsRefused)
 
 TEST_F(ImageIo, WhatCannotBeWrittenIsRefused)
 {
-    const auto kind = [](const Status& status) { return status.ok() ? ErrorKind::CodecFailure : status.error().kind; };
+    const auto kind = [](const Status& status) {
+        return status.ok() ? ErrorKind::CodecFailure : status.error().kind;
+    };
     EXPECT_EQ(kind(writePng8({}, path("a.png"))), ErrorKind::BadArgument);
     EXPECT_EQ(kind(writePng16({2, 2, {1, 2, 3}}, path("a.png"))), ErrorKind::BadArgument);
     EXPECT_EQ(kind(writeExr({0, 2, {}}, path("a.exr"))), ErrorKind::BadArgument);

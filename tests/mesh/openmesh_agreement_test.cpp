@@ -31,14 +31,16 @@ TEST_F(OpenMeshAgreement, ReadsWhatIsWritten)
     const Mesh torus = roundTorus();
     for (const char* name : {"a.obj", "a.ply", "a.off", "a.stl"})
         for (Encoding encoding : {Encoding::Binary, Encoding::BinaryBigEndian, Encoding::Ascii}) {
-            if (!writeMesh(torus, path(name), vertexNormals(torus), encoding).ok()) continue; // big-endian STL
+            if (!writeMesh(torus, path(name), vertexNormals(torus), encoding).ok())
+                continue; // big-endian STL
             Reference mesh;
             ASSERT_TRUE(OpenMesh::IO::read_mesh(mesh, path(name))) << name;
             ASSERT_EQ(mesh.n_vertices(), 108U) << name;
             ASSERT_EQ(mesh.n_faces(), 216U) << name;
             if (std::string(name) == "a.stl") continue; // in an order of its own
             for (auto v : mesh.vertices())
-                for (unsigned k = 0; k < 3; ++k) EXPECT_EQ(double{mesh.point(v)[k]}, torus.positions[v.idx()][k]);
+                for (unsigned k = 0; k < 3; ++k)
+                    EXPECT_EQ(double{mesh.point(v)[k]}, torus.positions[v.idx()][k]);
             for (auto f : mesh.faces()) {
                 Triangle corners{};
                 int k = 0;
@@ -55,13 +57,16 @@ TEST_F(OpenMeshAgreement, WritesWhatIsRead)
     omlog().disable();
     const Mesh torus = roundTorus();
     Reference mesh;
-    for (const Vec3& p : torus.positions) mesh.add_vertex(Reference::Point(float(p[0]), float(p[1]), float(p[2])));
+    for (const Vec3& p : torus.positions)
+        mesh.add_vertex(Reference::Point(float(p[0]), float(p[1]), float(p[2])));
     for (const Triangle& t : torus.faces)
-        mesh.add_face(mesh.vertex_handle(unsigned(t[0])), mesh.vertex_handle(unsigned(t[1])), mesh.vertex_handle(unsigned(t[2])));
+        mesh.add_face(mesh.vertex_handle(unsigned(t[0])), mesh.vertex_handle(unsigned(t[1])),
+                      mesh.vertex_handle(unsigned(t[2])));
     using OpenMesh::IO::Options;
     for (const char* name : {"a.obj", "a.ply", "a.off", "a.stl"})
-        for (Options::value_type flags : {Options::value_type{Options::Default}, Options::value_type{Options::Binary},
-                                          Options::value_type{Options::Binary | Options::MSB}}) {
+        for (Options::value_type flags :
+             {Options::value_type{Options::Default}, Options::value_type{Options::Binary},
+              Options::value_type{Options::Binary | Options::MSB}}) {
             const bool binary = flags & Options::Binary;
             if (binary && (std::string(name) == "a.off" || std::string(name) == "a.obj")) continue;
             if (flags & Options::MSB && std::string(name) == "a.stl") continue;

@@ -50,14 +50,16 @@ TEST_F(ReadFormats, ObjPlain)
 
 TEST_F(ReadFormats, ObjWithAttributesGroupsAndCrlf)
 {
-    expectTriangle(accept("a.OBJ", "mtllib none.mtl\r\no first\r\nv 0.1 0 0 1 0 0\r\nv +1. 0 0\r\nvt 0 0\r\nvn 0 0 1\r\n"
-                                   "o second\r\nv 0 1 -.0025\r\ng x\r\nusemtl red\r\ns off\r\nf 1/1/1 2//1 3/1\r\n")
-                       .mesh);
+    expectTriangle(
+        accept("a.OBJ", "mtllib none.mtl\r\no first\r\nv 0.1 0 0 1 0 0\r\nv +1. 0 0\r\nvt 0 0\r\nvn 0 0 1\r\n"
+                        "o second\r\nv 0 1 -.0025\r\ng x\r\nusemtl red\r\ns off\r\nf 1/1/1 2//1 3/1\r\n")
+            .mesh);
 }
 
 TEST_F(ReadFormats, ObjWithNegativeIndicesCountsFromTheFaceLine)
 {
-    const MeshFile file = accept("a.obj", "v 0.1 0 0\nv 1 0 0\nv 0 1 -2.5e-3\nf -3 -2 -1\nv 1 1 0\nf -2 -3 -1\n");
+    const MeshFile file =
+        accept("a.obj", "v 0.1 0 0\nv 1 0 0\nv 0 1 -2.5e-3\nf -3 -2 -1\nv 1 1 0\nf -2 -3 -1\n");
     EXPECT_THAT(file.mesh.faces, ElementsAre(Triangle{0, 1, 2}, Triangle{2, 1, 3}));
 }
 
@@ -76,31 +78,35 @@ TEST_F(ReadFormats, ObjWithoutFinalLineEndIsReportedNotRefused)
 
 TEST_F(ReadFormats, PlyTextWithExtrasOnBothElements)
 {
-    expectTriangle(accept("a.ply", "ply\nformat ascii 1.0\ncomment made by \\\nobj_info x\nelement vertex 3\n"
-                                   "property uchar red\nproperty double x\nproperty double y\n"
-                                   "property list uchar float weights\nproperty double z\n"
-                                   "element edge 1\nproperty int a\nproperty int b\n"
-                                   "element face 1\nproperty list uchar float texcoord\n"
-                                   "property list uchar int vertex_index\nproperty uchar flags\nend_header\n"
-                                   "255 0.1 0 2 .5 .5 0\n0 1 0 0 0\n0 0 1 1 9 -2.5e-3\n7 8\n2 0.5 0.5 3 0 1 2 1\n")
+    expectTriangle(accept("a.ply",
+                          "ply\nformat ascii 1.0\ncomment made by \\\nobj_info x\nelement vertex 3\n"
+                          "property uchar red\nproperty double x\nproperty double y\n"
+                          "property list uchar float weights\nproperty double z\n"
+                          "element edge 1\nproperty int a\nproperty int b\n"
+                          "element face 1\nproperty list uchar float texcoord\n"
+                          "property list uchar int vertex_index\nproperty uchar flags\nend_header\n"
+                          "255 0.1 0 2 .5 .5 0\n0 1 0 0 0\n0 0 1 1 9 -2.5e-3\n7 8\n2 0.5 0.5 3 0 1 2 1\n")
                        .mesh);
 }
 
 TEST_F(ReadFormats, PlyFacesMayPrecedeVertices)
 {
-    expectTriangle(accept("a.ply", "ply\r\nformat ascii 1.0\r\nelement face 1\r\nproperty list uchar uint vertex_indices\r\n"
-                                   "element vertex 3\r\nproperty double x\r\nproperty double y\r\nproperty double z\r\n"
-                                   "end_header\r\n3 0 1 2\r\n0.1 0 0\r\n1 0 0\r\n0 1 -2.5e-3\r\n")
-                       .mesh);
+    expectTriangle(
+        accept("a.ply",
+               "ply\r\nformat ascii 1.0\r\nelement face 1\r\nproperty list uchar uint vertex_indices\r\n"
+               "element vertex 3\r\nproperty double x\r\nproperty double y\r\nproperty double z\r\n"
+               "end_header\r\n3 0 1 2\r\n0.1 0 0\r\n1 0 0\r\n0 1 -2.5e-3\r\n")
+            .mesh);
 }
 
 TEST_F(ReadFormats, PlyBinaryBothByteOrdersDoublesAndExtras)
 {
     for (bool big : {false, true}) {
-        std::string bytes = std::string("ply\nformat binary_") + (big ? "big" : "little") +
-                            "_endian 1.0\nelement vertex 3\nproperty float64 x\nproperty double y\nproperty double z\n"
-                            "property ushort label\nelement face 1\nproperty list ushort float32 uv\n"
-                            "property list int16 uint16 vertex_indices\nend_header\n";
+        std::string bytes =
+            std::string("ply\nformat binary_") + (big ? "big" : "little") +
+            "_endian 1.0\nelement vertex 3\nproperty float64 x\nproperty double y\nproperty double z\n"
+            "property ushort label\nelement face 1\nproperty list ushort float32 uv\n"
+            "property list int16 uint16 vertex_indices\nend_header\n";
         for (const Vec3& p : {Vec3(0.1, 0, 0), Vec3(1, 0, 0), Vec3(0, 1, -2.5e-3)}) {
             for (double x : p) append(bytes, x, big);
             append(bytes, uint16_t{0x0a0d}, big); // looks like line ends
@@ -122,8 +128,9 @@ TEST_F(ReadFormats, PlyBinaryBothByteOrdersDoublesAndExtras)
 
 TEST_F(ReadFormats, PlyBinarySignedIntegerCoordinates)
 {
-    std::string bytes = "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty char x\nproperty short y\n"
-                        "property int z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
+    std::string bytes =
+        "ply\nformat binary_little_endian 1.0\nelement vertex 3\nproperty char x\nproperty short y\n"
+        "property int z\nelement face 1\nproperty list uchar int vertex_indices\nend_header\n";
     for (int i : {-3, 0, 5}) {
         append(bytes, static_cast<int8_t>(i), false);
         append(bytes, static_cast<int16_t>(i * i), false);
@@ -131,25 +138,32 @@ TEST_F(ReadFormats, PlyBinarySignedIntegerCoordinates)
     }
     append(bytes, uint8_t{3}, false);
     for (int v : {0, 1, 2}) append(bytes, v, false);
-    EXPECT_THAT(accept("a.ply", bytes).mesh.positions, ElementsAre(Vec3(-3, 9, 3), Vec3(0, 0, 0), Vec3(5, 25, -5)));
+    EXPECT_THAT(accept("a.ply", bytes).mesh.positions,
+                ElementsAre(Vec3(-3, 9, 3), Vec3(0, 0, 0), Vec3(5, 25, -5)));
 }
 
 TEST_F(ReadFormats, OffWithCommentsColoursAndBlankLines)
 {
-    expectTriangle(accept("a.off", "OFF # a comment\n# another\n\n3 1 0\n0.1 0 0 # first\n\n1 0 0 255 0 0\n0 1 -2.5e-3\n"
-                                   "# faces\n3 0 1 2 0.1 0.2 0.3\n")
-                       .mesh);
-    expectTriangle(accept("b.off", "COFF\n3 1 3\n0.1 0 0 1 0 0 1\n1 0 0 1 0 0 1\n0 1 -2.5e-3 1 0 0 1\n3 0 1 2\n").mesh);
-    expectTriangle(accept("c.off", "NOFF 3 1 0\n0.1 0 0 0 0 1\n1 0 0 0 0 1\n0 1 -2.5e-3 0 0 1\n3 0 1 2").mesh);
-    expectTriangle(accept("d.off", "3 1 0\n0.1 0 0\n1 0 0\n0 1 -2.5e-3\n3 0 1 2\n").mesh); // the keyword is optional
+    expectTriangle(
+        accept("a.off", "OFF # a comment\n# another\n\n3 1 0\n0.1 0 0 # first\n\n1 0 0 255 0 0\n0 1 -2.5e-3\n"
+                        "# faces\n3 0 1 2 0.1 0.2 0.3\n")
+            .mesh);
+    expectTriangle(
+        accept("b.off", "COFF\n3 1 3\n0.1 0 0 1 0 0 1\n1 0 0 1 0 0 1\n0 1 -2.5e-3 1 0 0 1\n3 0 1 2\n").mesh);
+    expectTriangle(
+        accept("c.off", "NOFF 3 1 0\n0.1 0 0 0 0 1\n1 0 0 0 0 1\n0 1 -2.5e-3 0 0 1\n3 0 1 2").mesh);
+    expectTriangle(
+        accept("d.off", "3 1 0\n0.1 0 0\n1 0 0\n0 1 -2.5e-3\n3 0 1 2\n").mesh); // the keyword is optional
 }
 
 TEST_F(ReadFormats, StlTextIsWelded)
 {
-    const std::string facet = "  facet normal nan 0 -nan(ind)\n    outer loop\n      vertex 0.1 0 0\n      vertex 1 0 0\n"
-                              "      vertex 0 1 -2.5e-3\n    endloop\n  endfacet\n";
-    const std::string other = "  FACET NORMAL 0 0 0\n    OUTER LOOP\n      VERTEX 1 0 0\n      VERTEX 0.1 -0 0\n"
-                              "      VERTEX 0.5 -1 0\n    ENDLOOP\n  ENDFACET\n";
+    const std::string facet =
+        "  facet normal nan 0 -nan(ind)\n    outer loop\n      vertex 0.1 0 0\n      vertex 1 0 0\n"
+        "      vertex 0 1 -2.5e-3\n    endloop\n  endfacet\n";
+    const std::string other =
+        "  FACET NORMAL 0 0 0\n    OUTER LOOP\n      VERTEX 1 0 0\n      VERTEX 0.1 -0 0\n"
+        "      VERTEX 0.5 -1 0\n    ENDLOOP\n  ENDFACET\n";
     const MeshFile file = accept("a.stl", "solid some name\n" + facet + other + "endsolid some name\n");
     EXPECT_EQ(file.mesh.vertexCount(), 4);
     EXPECT_THAT(file.mesh.faces, ElementsAre(Triangle{0, 1, 2}, Triangle{1, 0, 3}));
@@ -190,9 +204,9 @@ TEST_F(ReadFormats, StlNotWeldedIsOneComponentAFacet)
 TEST_F(ReadFormats, TrianglesForMeasuringNeedNoTopology)
 {
     // Three triangles on one edge and a lone one; a quad; an unreferenced NaN.
-    const Result<Mesh> mesh =
-        readTriangles(write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv nan 0 0\nv 9 9 9\nv 9 9 8\nv 9 8 9\n"
-                                     "f 1 2 3\nf 1 2 4\nf 1 2 5\nf 7 8 9\nf 3 4 5 2\n"));
+    const Result<Mesh> mesh = readTriangles(
+        write("a.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 -1 0\nv 0 0 1\nv nan 0 0\nv 9 9 9\nv 9 9 8\nv 9 8 9\n"
+                       "f 1 2 3\nf 1 2 4\nf 1 2 5\nf 7 8 9\nf 3 4 5 2\n"));
     ASSERT_TRUE(mesh.ok()) << mesh.error().message;
     EXPECT_EQ(mesh->faceCount(), 6);
     const Result<Mesh> infinite = readTriangles(write("b.obj", "v 0 0 0\nv 1 0 0\nv 0 inf 0\nf 1 2 3\n"));

@@ -12,8 +12,8 @@ inline Mesh tetrahedron()
     return {{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {0, 0, 1}}, {{0, 2, 1}, {0, 1, 3}, {1, 2, 3}, {2, 0, 3}}};
 }
 
-/// An octahedron, each side cut into 4^levels triangles, on a sphere about the origin. The eight sides share no
-/// vertices.
+/// An octahedron, each side cut into 4^levels triangles, on a sphere about the origin. The eight sides share
+/// no vertices.
 inline Mesh sphere(double radius, int levels)
 {
     const int n = 1 << levels;
@@ -25,7 +25,8 @@ inline Mesh sphere(double radius, int levels)
                 const auto at = [&](int i, int j) { return first + i * (n + 1) - i * (i - 1) / 2 + j; };
                 for (int i = 0; i <= n; ++i)
                     for (int j = 0; j <= n - i; ++j)
-                        mesh.positions.push_back(Vec3(sx * i, sy * j, sz * (n - i - j)).normalized() * radius);
+                        mesh.positions.push_back(Vec3(sx * i, sy * j, sz * (n - i - j)).normalized() *
+                                                 radius);
                 for (int i = 0; i < n; ++i)
                     for (int j = 0; j < n - i; ++j) {
                         Triangle t{at(i, j), at(i + 1, j), at(i, j + 1)};
@@ -85,7 +86,8 @@ inline Mesh square(int cells)
 {
     Mesh mesh;
     for (int i = 0; i <= cells; ++i)
-        for (int j = 0; j <= cells; ++j) mesh.positions.emplace_back(double(i) / cells, double(j) / cells, 0.0);
+        for (int j = 0; j <= cells; ++j)
+            mesh.positions.emplace_back(double(i) / cells, double(j) / cells, 0.0);
     const auto at = [cells](int i, int j) { return i * (cells + 1) + j; };
     for (int i = 0; i < cells; ++i)
         for (int j = 0; j < cells; ++j) {

@@ -19,8 +19,9 @@ protected:
     TemporaryFiles()
     {
         const auto* info = ::testing::UnitTest::GetInstance()->current_test_info();
-        folder_ = std::filesystem::temp_directory_path() /
-                  ("gimg-" + std::string(info->test_suite_name()) + "-" + info->name() + "-" + std::to_string(getpid()));
+        folder_ =
+            std::filesystem::temp_directory_path() / ("gimg-" + std::string(info->test_suite_name()) + "-" +
+                                                      info->name() + "-" + std::to_string(getpid()));
         std::filesystem::create_directories(folder_);
     }
     ~TemporaryFiles() override
@@ -32,7 +33,8 @@ protected:
     std::string path(const std::string& name) const { return (folder_ / name).string(); }
     std::string write(const std::string& name, std::string_view bytes) const
     {
-        std::ofstream(path(name), std::ios::binary).write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
+        std::ofstream(path(name), std::ios::binary)
+            .write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
         return path(name);
     }
     static std::string read(const std::string& path)

@@ -91,8 +91,9 @@ TEST_F(Triangulation, AWarpedQuadTakesTheSmallerSurface)
 {
     // Folded along 1-3 the areas are 2 x 0.5; along 0-2, much more.
     const Mesh mesh = polygon({{0, 0, 3}, {1, 0, 0}, {0, 0, -3.2}, {-1, 0.3, 0}});
-    EXPECT_NEAR(surfaceArea(mesh), std::min(surfaceArea({mesh.positions, {{0, 1, 2}, {0, 2, 3}}}),
-                                            surfaceArea({mesh.positions, {{0, 1, 3}, {1, 2, 3}}})),
+    EXPECT_NEAR(surfaceArea(mesh),
+                std::min(surfaceArea({mesh.positions, {{0, 1, 2}, {0, 2, 3}}}),
+                         surfaceArea({mesh.positions, {{0, 1, 3}, {1, 2, 3}}})),
                 1e-12);
 }
 
@@ -114,8 +115,10 @@ TEST_F(Triangulation, ARepeatedCornerCountsOnce)
 
 TEST_F(Triangulation, NoDiagonalDoublesAnEdge)
 {
-    // A pillow of two quads on the same four corners is a closed surface only if its sides are cut differently.
-    const Result<MeshFile> file = readMesh(write("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 4 3 2 1\n"));
+    // A pillow of two quads on the same four corners is a closed surface only if its sides are cut
+    // differently.
+    const Result<MeshFile> file =
+        readMesh(write("a.obj", "v 0 0 0\nv 1 0 0\nv 1 1 0\nv 0 1 0\nf 1 2 3 4\nf 4 3 2 1\n"));
     ASSERT_TRUE(file.ok()) << file.error().message;
     EXPECT_EQ(file->mesh.faceCount(), 4);
     EXPECT_EQ(topology(file->mesh).euler(), 2);

@@ -28,7 +28,8 @@ TEST_F(WriteMesh, DoublesSurviveARoundTripInIndexedFormats)
     for (const char* name : {"a.obj", "a.ply", "a.off"})
         for (Encoding encoding : kEncodings)
             for (bool withNormals : {false, true}) {
-                const Status status = writeMesh(torus, path(name), withNormals ? normals : std::vector<Vec3>{}, encoding);
+                const Status status =
+                    writeMesh(torus, path(name), withNormals ? normals : std::vector<Vec3>{}, encoding);
                 ASSERT_TRUE(status.ok()) << status.error().message;
                 const Result<MeshFile> file = readMesh(path(name));
                 ASSERT_TRUE(file.ok()) << file.error().message;
@@ -42,7 +43,8 @@ TEST_F(WriteMesh, PlyIsFloatWhereThatIsExact)
 {
     Mesh mesh = test::tetrahedron();
     ASSERT_TRUE(writeMesh(mesh, path("a.ply")).ok());
-    EXPECT_THAT(read(path("a.ply")), HasSubstr("property float x\nproperty float y\nproperty float z\nelement face 4\n"));
+    EXPECT_THAT(read(path("a.ply")),
+                HasSubstr("property float x\nproperty float y\nproperty float z\nelement face 4\n"));
     const size_t header = read(path("a.ply")).find("end_header\n") + 11;
     EXPECT_EQ(read(path("a.ply")).size(), header + 4 * 12 + 4 * 13);
     mesh.positions[2][1] = 0.1;
@@ -63,9 +65,11 @@ TEST_F(WriteMesh, StlHoldsFloatsAndNormals)
         EXPECT_EQ(topology(file->mesh).genus, 1);
         EXPECT_NEAR(surfaceArea(file->mesh), surfaceArea(torus), 1e-6);
     }
-    ASSERT_TRUE(writeMesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, path("b.stl"), {}, Encoding::Ascii).ok());
-    EXPECT_EQ(read(path("b.stl")), "solid mesh\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
-                                   "endloop\nendfacet\nendsolid mesh\n");
+    ASSERT_TRUE(
+        writeMesh({{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}}, path("b.stl"), {}, Encoding::Ascii).ok());
+    EXPECT_EQ(read(path("b.stl")),
+              "solid mesh\nfacet normal 0 0 1\nouter loop\nvertex 0 0 0\nvertex 1 0 0\nvertex 0 1 0\n"
+              "endloop\nendfacet\nendsolid mesh\n");
     ASSERT_TRUE(writeMesh(torus, path("c.stl")).ok());
     EXPECT_THAT(read(path("c.stl")), Not(StartsWith("solid")));
     EXPECT_EQ(read(path("c.stl")).size(), 84U + 50U * 216U);
@@ -76,15 +80,16 @@ TEST_F(WriteMesh, ObjAndOffCarryNormals)
     const Mesh mesh{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {{0, 1, 2}}};
     const std::vector<Vec3> up(3, Vec3(0, 0, 1));
     ASSERT_TRUE(writeMesh(mesh, path("a.obj"), up).ok());
-    EXPECT_EQ(read(path("a.obj")), "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 1\nvn 0 0 1\nf 1//1 2//2 3//3\n");
+    EXPECT_EQ(read(path("a.obj")),
+              "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0 1\nvn 0 0 1\nvn 0 0 1\nf 1//1 2//2 3//3\n");
     ASSERT_TRUE(writeMesh(mesh, path("a.off"), up).ok());
     EXPECT_EQ(read(path("a.off")), "NOFF\n3 1 0\n0 0 0 0 0 1\n1 0 0 0 0 1\n0 1 0 0 0 1\n3 0 1 2\n");
 }
 
 TEST_F(WriteMesh, WhatCannotBeWrittenIsRefusedBeforeAFileIsMade)
 {
-    const auto refusal = [this](const Mesh& mesh, const std::string& name, const std::vector<Vec3>& normals = {},
-                                Encoding encoding = Encoding::Binary) {
+    const auto refusal = [this](const Mesh& mesh, const std::string& name,
+                                const std::vector<Vec3>& normals = {}, Encoding encoding = Encoding::Binary) {
         const Status status = writeMesh(mesh, path(name), normals, encoding);
         EXPECT_FALSE(status.ok());
         EXPECT_FALSE(std::filesystem::exists(path(name)));

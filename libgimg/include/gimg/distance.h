@@ -15,8 +15,9 @@ struct DistanceOptions
     int threads = 0;      ///< at most one a core; 0: as many. The numbers do not depend on it.
 };
 
-/// How far two surfaces are apart, in the unit of the coordinates. Distances are from points of one surface to the
-/// nearest point of the other: the root mean square over the samples, and the maximum over samples and vertices.
+/// How far two surfaces are apart, in the unit of the coordinates. Distances are from points of one surface
+/// to the nearest point of the other: the root mean square over the samples, and the maximum over samples and
+/// vertices.
 struct SurfaceDistance
 {
     double diagonal = 0; ///< of the reference's bounding box
@@ -34,8 +35,8 @@ struct SurfaceDistance
     double psnr() const;
 };
 
-/// Compares surfaces with one reference. What belongs to the reference (samples, tree) is made once, so that a search
-/// over many candidates pays only for the candidate.
+/// Compares surfaces with one reference. What belongs to the reference (samples, tree) is made once, so that
+/// a search over many candidates pays only for the candidate.
 class SurfaceMeasure
 {
 public:
@@ -45,8 +46,9 @@ public:
     SurfaceMeasure& operator=(SurfaceMeasure&&) noexcept;
 
     /// Thread-safe. Neither mesh need be manifold; triangles without area take part as segments or points.
-    /// Errors: EmptyMesh (a mesh without area), NotFinite, BadArgument (no samples, an index out of range, or meshes
-    /// that differ in size or place by a factor above 1e9); those of the reference are reported here too.
+    /// Errors: EmptyMesh (a mesh without area), NotFinite, BadArgument (no samples, an index out of range, or
+    /// meshes that differ in size or place by a factor above 1e9); those of the reference are reported here
+    /// too.
     Result<SurfaceDistance> against(const Mesh& test) const;
 
 private:
@@ -55,6 +57,7 @@ private:
 };
 
 /// One shot of SurfaceMeasure.
-Result<SurfaceDistance> compareSurfaces(const Mesh& reference, const Mesh& test, const DistanceOptions& options = {});
+Result<SurfaceDistance> compareSurfaces(const Mesh& reference, const Mesh& test,
+                                        const DistanceOptions& options = {});
 
 } // namespace gimg

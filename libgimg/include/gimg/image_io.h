@@ -4,13 +4,14 @@
 #include "gimg/result.h"
 
 #include <cstddef>
+#include <cstdint>
 #include <string>
 #include <vector>
 
 namespace gimg {
 
-/// Three floats a pixel: x, y, z of a geometry image, or of a normal image. Row 0 holds t = 0 and is row 0 of every
-/// file, which viewers show at the top; column 0 holds s = 0.
+/// Three floats a pixel: x, y, z of a geometry image, or of a normal image. Row 0 holds t = 0 and is row 0 of
+/// every file, which viewers show at the top; column 0 holds s = 0.
 struct FloatImage
 {
     int width = 0;
@@ -19,8 +20,8 @@ struct FloatImage
 
     float at(int column, int row, int channel) const
     {
-        return samples[(static_cast<size_t>(row) * static_cast<size_t>(width) + static_cast<size_t>(column)) * 3 +
-                       static_cast<size_t>(channel)];
+        const int64_t pixel = int64_t{row} * width + column;
+        return samples[static_cast<size_t>(3 * pixel + channel)];
     }
 };
 
@@ -32,10 +33,11 @@ struct BoundingCube
 };
 BoundingCube boundingCube(const FloatImage& image);
 
-/// Writes x, y, z as red, green, blue: (value - low) / side of the bounding cube, times 255 or 65535, rounded. The
-/// three axes share one scale; an image without extent is black.
-/// Source: Gu, Gortler, Hoppe 2002 show geometry images this way.
-/// Errors: BadArgument (empty, or samples that do not fit the size), NotFinite (names the pixel), FileNotWritable.
+/// Writes x, y, z as red, green, blue: (value - low) / side of the bounding cube, times 255 or 65535,
+/// rounded. The three axes share one scale; an image without extent is black. So do Gu, Gortler and Hoppe
+/// (2002) show geometry images.
+/// Errors: BadArgument (empty, or samples that do not fit the size), NotFinite (names the pixel),
+/// FileNotWritable.
 Status writePng8(const FloatImage& image, const std::string& path);
 Status writePng16(const FloatImage& image, const std::string& path);
 
@@ -48,7 +50,8 @@ Status writeNormalPng(const FloatImage& normals, const std::string& path);
 Status writeExr(const FloatImage& image, const std::string& path);
 
 /// Reads the channels R, G, B of an EXR file; half-float channels are widened.
-/// Errors: FileNotReadable, FileCorrupt (also: a channel is missing), BadArgument (above 32768 x 32768 pixels).
+/// Errors: FileNotReadable, FileCorrupt (also: a channel is missing), BadArgument (above 32768 x 32768
+/// pixels).
 Result<FloatImage> readExr(const std::string& path);
 
 } // namespace gimg

@@ -21,9 +21,9 @@ enum class Weld
 struct ReadOptions
 {
     Weld weld = Weld::Auto;
-    /// Of several components take the one with the most triangles (the first of equals); defects of the others then
-    /// do not matter. A component is connected across edges: parts that touch in a vertex only are two. False:
-    /// several components are refused.
+    /// Of several components take the one with the most triangles (the first of equals); defects of the
+    /// others then do not matter. A component is connected across edges: parts that touch in a vertex only
+    /// are two. False: several components are refused.
     bool largestComponent = false;
 };
 
@@ -33,19 +33,19 @@ struct RepairReport
     int64_t verticesRead = 0; ///< as in the file; an STL file has three a facet
     int64_t facesRead = 0;    ///< as in the file, polygons counted once
 
-    int64_t polygonsSplit = 0;        ///< faces with more than three corners, cut into triangles
-    int64_t repeatedVertexFaces = 0;  ///< triangles removed because two corners are the same vertex
-    int64_t duplicateFaces = 0;       ///< triangles removed because another one has the same three vertices
-    int64_t zeroAreaFaces = 0;        ///< kept: a triangle without area still closes the surface
-    int64_t repeatedPositions = 0;    ///< referenced vertices at the position of an earlier one, before welding
-    int64_t weldedVertices = 0;       ///< of those, merged into the earlier one
-    std::string weldRefusal;          ///< why Weld::Auto left repeatedPositions alone; empty if it did not
+    int64_t polygonsSplit = 0;       ///< faces with more than three corners, cut into triangles
+    int64_t repeatedVertexFaces = 0; ///< triangles removed because two corners are the same vertex
+    int64_t duplicateFaces = 0;      ///< triangles removed because another one has the same three vertices
+    int64_t zeroAreaFaces = 0;       ///< kept: a triangle without area still closes the surface
+    int64_t repeatedPositions = 0; ///< referenced vertices at the position of an earlier one, before welding
+    int64_t weldedVertices = 0;    ///< of those, merged into the earlier one
+    std::string weldRefusal;       ///< why Weld::Auto left repeatedPositions alone; empty if it did not
     int64_t unreferencedVertices = 0; ///< dropped: in no face
     int64_t flippedFaces = 0;         ///< reversed to make the orientation consistent
     int64_t components = 0;           ///< connected across edges, before any was dropped
     int64_t droppedFaces = 0;         ///< triangles of the components that were not chosen
     int64_t trailingBytes = 0;        ///< bytes after the end of the data, ignored
-    bool lastLineOpen = false;        ///< a text file without a final line end: its last number may be cut short
+    bool lastLineOpen = false; ///< a text file without a final line end: its last number may be cut short
 };
 
 /// One line for every entry of the report that a user should know about; empty for a clean mesh.
@@ -58,21 +58,23 @@ struct MeshFile
     RepairReport report;
 };
 
-/// Reads OBJ, PLY (ascii, binary of either byte order), OFF or STL (ascii, binary), told apart by the extension of
-/// `path`. Coordinates keep the file's precision. Polygons are triangulated, repeated vertices welded (see Weld),
-/// faces with a repeated vertex and duplicate faces removed, unreferenced vertices dropped, and the orientation made
-/// consistent: where faces had to be flipped a closed surface ends up with its normals outward, another one with the
-/// orientation most of its faces had. Vertices and faces keep the order of the file.
+/// Reads OBJ, PLY (ascii, binary of either byte order), OFF or STL (ascii, binary), told apart by the
+/// extension of `path`. Coordinates keep the file's precision. Polygons are triangulated, repeated vertices
+/// welded (see Weld), faces with a repeated vertex and duplicate faces removed, unreferenced vertices
+/// dropped, and the orientation made consistent: where faces had to be flipped a closed surface ends up with
+/// its normals outward, another one with the orientation most of its faces had. Vertices and faces keep the
+/// order of the file.
 ///
-/// What cannot be repaired this way is refused with one line that starts with the path and names the element as the
-/// file counts it: OBJ from 1, the others from 0; STL vertices in file order, three a facet.
+/// What cannot be repaired this way is refused with one line that starts with the path and names the element
+/// as the file counts it: OBJ from 1, the others from 0; STL vertices in file order, three a facet.
 /// Errors: FormatUnknown, FileNotReadable, FileTruncated, FileCorrupt, EmptyMesh; then, in this order,
-/// SeveralComponents, NotFinite, NonManifoldEdge, NonManifoldVertex, NotOrientable.
+/// NotFinite (of any component unless the largest is asked for), SeveralComponents, NonManifoldEdge,
+/// NonManifoldVertex, NotOrientable.
 /// Safe on hostile files and thread-safe. Memory is a small multiple of the file's size.
 Result<MeshFile> readMesh(const std::string& path, const ReadOptions& options = {});
 
-/// Reads the triangles of a mesh for measuring: as readMesh, but with no repair and no demand on topology. Polygons are
-/// triangulated; coordinates of referenced vertices must be finite.
+/// Reads the triangles of a mesh for measuring: as readMesh, but with no repair and no demand on topology.
+/// Polygons are triangulated; coordinates of referenced vertices must be finite.
 /// Errors: FormatUnknown, FileNotReadable, FileTruncated, FileCorrupt, EmptyMesh, NotFinite.
 Result<Mesh> readTriangles(const std::string& path);
 
@@ -84,11 +86,13 @@ enum class Encoding
     Ascii,
 };
 
-/// Writes OBJ, PLY, OFF or STL, told apart by the extension of `path`. Coordinates survive a round trip exactly (PLY
-/// uses float32 where that is exact, else float64), except in STL, which holds float32 and no shared vertices.
+/// Writes OBJ, PLY, OFF or STL, told apart by the extension of `path`. Coordinates survive a round trip
+/// exactly (PLY uses float32 where that is exact, else float64), except in STL, which holds float32 and no
+/// shared vertices.
 /// @param normals   none, or one for each vertex; STL has facet normals only and ignores them
 /// @param encoding  of PLY and STL; STL knows no BinaryBigEndian
-/// Errors: FormatUnknown, BadArgument (an index out of range, a wrong number of normals), NotFinite, FileNotWritable.
+/// Errors: FormatUnknown, BadArgument (an index out of range, a wrong number of normals), NotFinite,
+/// FileNotWritable.
 Status writeMesh(const Mesh& mesh, const std::string& path, std::span<const Vec3> normals = {},
                  Encoding encoding = Encoding::Binary);
 
