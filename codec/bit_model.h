@@ -46,7 +46,8 @@ private:
     static std::uint16_t moved(std::uint16_t estimate, unsigned shift, bool bit)
     {
         const std::uint32_t value = estimate;
-        return static_cast<std::uint16_t>(bit ? value - (value >> shift) : value + ((65536u - value) >> shift));
+        return static_cast<std::uint16_t>(bit ? value - (value >> shift)
+                                              : value + ((65536u - value) >> shift));
     }
 };
 

@@ -17,8 +17,10 @@ std::uint32_t findRoot(std::uint32_t* parent, std::uint32_t k)
 void unite(std::uint32_t* parent, std::uint32_t a, std::uint32_t b)
 {
     const std::uint32_t rootA = findRoot(parent, a), rootB = findRoot(parent, b);
-    if (rootA < rootB) parent[rootB] = rootA;
-    else parent[rootA] = rootB;
+    if (rootA < rootB)
+        parent[rootB] = rootA;
+    else
+        parent[rootA] = rootB;
 }
 
 } // namespace
@@ -88,7 +90,8 @@ Topology seamTopology(const SeamView& seam, std::uint32_t* scratch)
     for (std::uint32_t s = 0; s < count; ++s) {
         if (visited[s] != 0) continue;
         ++topology.cutNodes;
-        for (std::uint32_t corner = s; visited[corner] == 0; corner = after(mate[corner])) visited[corner] = 1;
+        for (std::uint32_t corner = s; visited[corner] == 0; corner = after(mate[corner]))
+            visited[corner] = 1;
     }
 
     // chi = V - E + F = 2 - 2 genus - loops, where inner vertices and edges of the paths cancel.

@@ -19,10 +19,14 @@ inline GridPoint borderPoint(std::uint32_t grid, std::uint32_t position)
     const std::uint32_t last = grid - 1;
     const std::uint32_t along = position % last;
     switch (position / last) {
-    case 0: return {along, 0};
-    case 1: return {last, along};
-    case 2: return {last - along, last};
-    default: return {0, last - along};
+    case 0:
+        return {along, 0};
+    case 1:
+        return {last, along};
+    case 2:
+        return {last - along, last};
+    default:
+        return {0, last - along};
     }
 }
 

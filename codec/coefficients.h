@@ -14,8 +14,8 @@ constexpr unsigned kComponents = 3;
 struct QuantizedImage
 {
     std::uint32_t grid = 0;
-    std::int32_t* detail[kComponents] = {};                            ///< planes of grid^2; [0, 3)^2 is unused
-    std::int64_t coarse[kComponents][kCoarsest * kCoarsest] = {};      ///< the 3 x 3 image
+    std::int32_t* detail[kComponents] = {};                       ///< planes of grid^2; [0, 3)^2 is unused
+    std::int64_t coarse[kComponents][kCoarsest * kCoarsest] = {}; ///< the 3 x 3 image
 };
 
 /// Details fit 30 bits; the coarsest image's samples are exact in a double.
@@ -88,9 +88,9 @@ struct Neighbourhood
         kCount,
     };
     std::int32_t value[kComponents][kCount];
-    std::uint64_t farther[kComponents];      ///< magnitudes two steps west and north
+    std::uint64_t farther[kComponents];       ///< magnitudes two steps west and north
     std::uint64_t secondSibling[kComponents]; ///< magnitude at the same place of the vertical band
-    std::int32_t here[kComponents];          ///< this place's components coded so far; 0 for the others
+    std::int32_t here[kComponents];           ///< this place's components coded so far; 0 for the others
 };
 
 /// The models that one coefficient uses.
@@ -125,21 +125,25 @@ template <class Coder> bool codeSign(Coder& coder, const CoefficientContext& con
         expected += signOf(near.here[c]) * alike;
     }
     const std::int64_t clarity = expected < 0 ? -expected : expected;
-    const unsigned across = expected == 0 ? 0u : (expected < 0 ? 1u : 4u) + (clarity < 4 ? 0u : clarity < 16 ? 1u : 2u);
+    const unsigned across = expected == 0 ? 0u
+                                          : (expected < 0 ? 1u : 4u) + (clarity < 4    ? 0u
+                                                                        : clarity < 16 ? 1u
+                                                                                       : 2u);
 
     const auto side = [own](Neighbourhood::Direction k) { return static_cast<unsigned>(signOf(own[k]) + 1); };
     CoefficientModels& models = *context.all;
     const unsigned o = context.orientation;
     BitModel* const mixed[kMixedSigns] = {
-        &models.signAlong[o][side(Neighbourhood::West)][side(Neighbourhood::North)][side(Neighbourhood::NorthWest)]
-                         [side(Neighbourhood::NorthEast)],
+        &models.signAlong[o][side(Neighbourhood::West)][side(Neighbourhood::North)]
+                         [side(Neighbourhood::NorthWest)][side(Neighbourhood::NorthEast)],
         &models.signAcross[component][across],
         &models.signFamily[o][side(Neighbourhood::Parent)][side(Neighbourhood::Sibling)],
     };
     return codeMixed(coder, mixed, models.signWeights[o], negative);
 }
 
-template <class Coder> std::int32_t codeDetail(Coder& coder, const CoefficientContext& context, std::int32_t value)
+template <class Coder>
+std::int32_t codeDetail(Coder& coder, const CoefficientContext& context, std::int32_t value)
 {
     std::uint64_t magnitude = magnitudeOf(value);
     unsigned step = 0;
@@ -149,8 +153,10 @@ template <class Coder> std::int32_t codeDetail(Coder& coder, const CoefficientCo
         if (!codeMixed(coder, models, context.weights[step], magnitude > step)) break;
     }
     if (step == 0) return 0;
-    if (step < kSteps) magnitude = step;
-    else magnitude = kSteps + codeExpGolomb(coder, *context.larger, magnitude - kSteps);
+    if (step < kSteps)
+        magnitude = step;
+    else
+        magnitude = kSteps + codeExpGolomb(coder, *context.larger, magnitude - kSteps);
     // The escape's largest value would leave the range of a detail by a hair.
     if (magnitude > static_cast<std::uint64_t>(kMaxDetail)) return coder.fail(), 0;
     const bool negative = codeSign(coder, context, value < 0);
@@ -162,7 +168,10 @@ class NeighbourRows
 {
 public:
     static constexpr std::uint32_t kMargin = 2;
-    static constexpr std::size_t scratchSize(std::uint32_t width) { return 3 * (std::size_t{width} + 2 * kMargin); }
+    static constexpr std::size_t scratchSize(std::uint32_t width)
+    {
+        return 3 * (std::size_t{width} + 2 * kMargin);
+    }
 
     void begin(std::int32_t* scratch, std::uint32_t width)
     {
@@ -208,8 +217,8 @@ template <class Coder> void codeCoarse(Coder& coder, CoefficientModels& models, 
             const std::int64_t expected =
                 k == 0 ? 0 : image.coarse[c][k % kCoarsest == 0 ? k - kCoarsest : k - 1];
             const std::int64_t difference = Coder::kDecodes ? 0 : value - expected;
-            std::uint64_t magnitude =
-                difference < 0 ? static_cast<std::uint64_t>(-difference) : static_cast<std::uint64_t>(difference);
+            std::uint64_t magnitude = difference < 0 ? static_cast<std::uint64_t>(-difference)
+                                                     : static_cast<std::uint64_t>(difference);
             if (k == 0) {
                 // Where the surface lies in space: nothing is known of it but that.
                 unsigned bits = 0;
@@ -222,7 +231,8 @@ template <class Coder> void codeCoarse(Coder& coder, CoefficientModels& models, 
             }
             if (magnitude != 0) {
                 const bool negative = coder.raw(1, difference < 0 ? 1 : 0) != 0;
-                value = expected + (negative ? -static_cast<std::int64_t>(magnitude) : static_cast<std::int64_t>(magnitude));
+                value = expected + (negative ? -static_cast<std::int64_t>(magnitude)
+                                             : static_cast<std::int64_t>(magnitude));
             } else {
                 value = expected;
             }
@@ -244,10 +254,12 @@ inline CoefficientContext contextOf(CoefficientModels& models, const Neighbourho
     // Components already coded at this place say more than the neighbours of those that are not.
     std::uint64_t others = 0;
     for (unsigned c = 0; c < kComponents; ++c) {
-        if (c < component) others += 2 * magnitudeOf(near.here[c]);
+        if (c < component)
+            others += 2 * magnitudeOf(near.here[c]);
         else if (c > component)
             others += (magnitudeOf(near.value[c][Neighbourhood::West]) +
-                       magnitudeOf(near.value[c][Neighbourhood::North]) + 1) / 2;
+                       magnitudeOf(near.value[c][Neighbourhood::North]) + 1) /
+                      2;
     }
 
     const unsigned a = activityClass(around, kOwnClasses - 1);
@@ -299,35 +311,37 @@ void codeImage(Coder& coder, CoefficientModels& models, QuantizedImage& image, P
             for (std::uint32_t j = 0; j < band.height; ++j) {
                 if (coder.failed()) return;
                 for (unsigned c = 0; c < kComponents; ++c) rows[c].nextRow();
+                const std::int32_t* parents[kComponents];
+                const std::int32_t* siblings[kComponents];
+                const std::int32_t* secondSiblings[kComponents];
+                for (unsigned c = 0; c < kComponents; ++c) {
+                    parents[c] = image.detail[c] + (parent.j0 + j / 2) * pitch + parent.i0;
+                    siblings[c] = image.detail[c] + (horizontal.j0 + j) * pitch + horizontal.i0;
+                    secondSiblings[c] = image.detail[c] + (vertical.j0 + j) * pitch + vertical.i0;
+                }
                 for (std::uint32_t i = 0; i < band.width; ++i) {
+                    // The horizontal band is a column narrower than the vertical one.
+                    const std::uint32_t beside = i < horizontal.width ? i : i - 1;
                     Neighbourhood near;
                     for (unsigned c = 0; c < kComponents; ++c) {
                         const std::int32_t* r0 = rows[c].row(0) + i;
                         const std::int32_t* r1 = rows[c].row(1) + i;
-                        const std::int32_t* plane = image.detail[c];
                         std::int32_t* v = near.value[c];
                         v[Neighbourhood::West] = r0[-1];
                         v[Neighbourhood::North] = r1[0];
                         v[Neighbourhood::NorthWest] = r1[-1];
                         v[Neighbourhood::NorthEast] = r1[1];
-                        v[Neighbourhood::Parent] =
-                            hasParent ? plane[(parent.j0 + j / 2) * pitch + parent.i0 + i / 2] : 0;
-                        // The horizontal band is a column narrower than the vertical one.
-                        const std::uint32_t beside = i < horizontal.width ? i : i - 1;
-                        v[Neighbourhood::Sibling] =
-                            orientation == Horizontal
-                                ? 0
-                                : plane[(horizontal.j0 + j) * pitch + horizontal.i0 + beside];
+                        v[Neighbourhood::Parent] = hasParent ? parents[c][i / 2] : 0;
+                        v[Neighbourhood::Sibling] = orientation == Horizontal ? 0 : siblings[c][beside];
                         near.farther[c] = magnitudeOf(r0[-2]) + magnitudeOf(rows[c].row(2)[i]);
                         near.secondSibling[c] =
-                            orientation == Diagonal
-                                ? magnitudeOf(plane[(vertical.j0 + j) * pitch + vertical.i0 + i])
-                                : 0;
+                            orientation == Diagonal ? magnitudeOf(secondSiblings[c][i]) : 0;
                         near.here[c] = 0;
                     }
                     for (unsigned c = 0; c < kComponents; ++c) {
                         if (empty[c]) continue;
-                        const CoefficientContext context = detail::contextOf(models, near, c, orientation, level);
+                        const CoefficientContext context =
+                            detail::contextOf(models, near, c, orientation, level);
                         const std::size_t index = (band.j0 + j) * pitch + band.i0 + i;
                         const std::int32_t value = pick(coder, context, c, index);
                         near.here[c] = value;

@@ -31,7 +31,8 @@ std::size_t rowScratchOf(std::uint32_t grid)
 
 struct PlainPick
 {
-    std::int32_t operator()(RangeDecoder& decoder, const CoefficientContext& context, unsigned, std::size_t) const
+    std::int32_t operator()(RangeDecoder& decoder, const CoefficientContext& context, unsigned,
+                            std::size_t) const
     {
         return codeDetail(decoder, context, 0);
     }
@@ -89,7 +90,8 @@ ReadStatus decodeRaw12(const ImageHeader& header, float* out)
     for (std::size_t k = 0; k < count; ++k) {
         const std::uint8_t* pair = bytes + k / 2 * 3;
         const std::uint32_t q = k % 2 == 0 ? pair[0] | (pair[1] & 0x0Fu) << 8 : pair[1] >> 4 | pair[2] << 4;
-        const double value = static_cast<double>(header.least[k % kComponents]) + q * static_cast<double>(header.step);
+        const double value =
+            static_cast<double>(header.least[k % kComponents]) + q * static_cast<double>(header.step);
         if (!(value <= kLargestFloat && value >= -kLargestFloat)) return ReadStatus::Corrupt;
         out[k] = static_cast<float>(value);
     }
@@ -145,7 +147,8 @@ ReadStatus decodeFloat(const ImageHeader& header, Arena& arena, float* out)
                                         std::uint32_t{plane[3 * samples + k]} << 24;
             const std::uint32_t difference = coded >> 1 ^ (~(coded & 1u) + 1u);
             std::uint32_t bits = 0;
-            if (k > 0) std::memcpy(&bits, &out[kComponents * (k % grid == 0 ? k - grid : k - 1) + c], sizeof bits);
+            if (k > 0)
+                std::memcpy(&bits, &out[kComponents * (k % grid == 0 ? k - grid : k - 1) + c], sizeof bits);
             bits += difference;
             std::memcpy(&out[kComponents * k + c], &bits, sizeof bits);
             if ((bits >> 23 & 0xFFu) == 0xFFu) return ReadStatus::Corrupt;
@@ -161,7 +164,8 @@ void copyFirstOfClass(float* out, std::uint32_t grid, const std::uint32_t* class
     for (std::uint32_t k = 0; k < borderSize(grid); ++k) {
         if (classes[k] == k) continue;
         std::memcpy(&out[kComponents * std::size_t{borderSample(grid, k)}],
-                    &out[kComponents * std::size_t{borderSample(grid, classes[k])}], kComponents * sizeof *out);
+                    &out[kComponents * std::size_t{borderSample(grid, classes[k])}],
+                    kComponents * sizeof *out);
     }
 }
 
@@ -201,7 +205,8 @@ std::uint64_t imageWorkspace(const ImageHeader& header)
     const std::size_t samples = samplesOf(header.grid);
     if (header.coding == GIM_CODING_RAW12) return 0;
     if (header.coding == GIM_CODING_FLOAT)
-        return Arena::sizeOf<std::uint8_t>(4 * kComponents * samples) + Arena::sizeOf<std::uint8_t>(kInflateMemory);
+        return Arena::sizeOf<std::uint8_t>(4 * kComponents * samples) +
+               Arena::sizeOf<std::uint8_t>(kInflateMemory);
     return kComponents * Arena::sizeOf<std::int32_t>(samples) +
            Arena::sizeOf<std::int32_t>(rowScratchOf(header.grid)) + Arena::sizeOf<CoefficientModels>(1) +
            Arena::sizeOf<double>(samples) + Arena::sizeOf<double>(coarseSamplesOf(header.grid)) +

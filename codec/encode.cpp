@@ -2,8 +2,8 @@
 
 #include "border.h"
 #include "format/container.h"
-#include "image_header.h"
 #include "format/writer.h"
+#include "image_header.h"
 
 #include <algorithm>
 #include <cmath>
@@ -30,13 +30,16 @@ bool isGridSize(std::uint32_t n)
     return n >= 3 && n <= (1u << kLargestExponent) + 1 && ((n - 1) & (n - 2)) == 0;
 }
 
-std::string imageFault(const char* name, std::span<const float> samples, std::uint32_t grid, std::uint32_t lowest)
+std::string imageFault(const char* name, std::span<const float> samples, std::uint32_t grid,
+                       std::uint32_t lowest)
 {
     const std::string what = name;
     if (!isGridSize(grid)) return what + ": the grid is not 2^j + 1 samples a side with j in 1..12";
     if (grid < lowest) return what + ": the grid is smaller than the lowest level";
-    if (samples.size() != std::size_t{grid} * grid * kComponents) return what + ": the number of samples does not fit the grid";
-    const auto bad = std::find_if(samples.begin(), samples.end(), [](float value) { return !std::isfinite(value); });
+    if (samples.size() != std::size_t{grid} * grid * kComponents)
+        return what + ": the number of samples does not fit the grid";
+    const auto bad =
+        std::find_if(samples.begin(), samples.end(), [](float value) { return !std::isfinite(value); });
     if (bad != samples.end())
         return what + ": sample " + std::to_string((bad - samples.begin()) / 3) + " is not finite";
     return {};
@@ -85,9 +88,11 @@ Raw12 raw12Content(std::span<const float> samples, std::uint32_t grid)
     unsigned count = 0;
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const double offset = static_cast<double>(samples[k]) - static_cast<double>(least[k % kComponents]);
-        const auto q = static_cast<std::uint32_t>(std::clamp(std::lround(offset / static_cast<double>(out.step)), 0l, 4095l));
+        const auto q = static_cast<std::uint32_t>(
+            std::clamp(std::lround(offset / static_cast<double>(out.step)), 0l, 4095l));
         bits |= q << count;
-        for (count += 12; count >= 8; count -= 8, bits >>= 8) out.content.push_back(static_cast<std::uint8_t>(bits));
+        for (count += 12; count >= 8; count -= 8, bits >>= 8)
+            out.content.push_back(static_cast<std::uint8_t>(bits));
     }
     if (count > 0) out.content.push_back(static_cast<std::uint8_t>(bits));
     return out;
@@ -116,7 +121,8 @@ Bytes floatContent(std::span<const float> samples, std::uint32_t grid)
     Bytes content = imageContent(grid, GIM_CODING_FLOAT);
     uLongf packed = compressBound(static_cast<uLong>(planes.size()));
     content.resize(1 + packed);
-    compress2(content.data() + 1, &packed, planes.data(), static_cast<uLong>(planes.size()), Z_BEST_COMPRESSION);
+    compress2(content.data() + 1, &packed, planes.data(), static_cast<uLong>(planes.size()),
+              Z_BEST_COMPRESSION);
     content.resize(1 + packed);
     return content;
 }
@@ -166,7 +172,9 @@ StepRange sensibleSteps(const TransformedImage& image)
 std::variant<Candidate, EncodeError> searchStep(const TransformedImage& image, std::size_t target)
 {
     const auto attempt = [&](float step) { return Candidate{waveletContent(image, step), step}; };
-    const auto sizeOf = [](const Candidate& candidate) { return format::chunkSize(candidate.content.size()); };
+    const auto sizeOf = [](const Candidate& candidate) {
+        return format::chunkSize(candidate.content.size());
+    };
     const StepRange range = sensibleSteps(image);
     if (image.largest > kLargestCoefficient)
         return EncodeError{EncodeError::Kind::BadSettings, "the samples are too large for wavelet coding", 0};
@@ -232,7 +240,8 @@ std::variant<Candidate, EncodeError> searchStep(const TransformedImage& image, s
 Outcome<Encoder> Encoder::prepare(const Source& source)
 {
     if (std::string fault = seamFault(source.seam); !fault.empty()) return badSource("seam: " + fault);
-    if (std::string fault = imageFault("geometry", source.xyz, source.grid, source.seam.lowest); !fault.empty())
+    if (std::string fault = imageFault("geometry", source.xyz, source.grid, source.seam.lowest);
+        !fault.empty())
         return badSource(fault);
     Encoder encoder;
     encoder.seam_ = source.seam;
@@ -240,7 +249,8 @@ Outcome<Encoder> Encoder::prepare(const Source& source)
     encoder.xyz_.assign(source.xyz.begin(), source.xyz.end());
     encoder.geometry_ = transform(source.xyz, source.grid);
     if (source.normalGrid != 0) {
-        if (std::string fault = imageFault("normals", source.normals, source.normalGrid, source.seam.lowest); !fault.empty())
+        if (std::string fault = imageFault("normals", source.normals, source.normalGrid, source.seam.lowest);
+            !fault.empty())
             return badSource(fault);
         encoder.normals_.assign(source.normals.begin(), source.normals.end());
         encoder.normalImage_ = transform(source.normals, source.normalGrid);
@@ -259,7 +269,8 @@ Outcome<EncodedFile> Encoder::encode(const Settings& settings) const
     for (int k = 0; k < 2 && images[k] != nullptr; ++k) {
         switch (settings.coding) {
         case GIM_CODING_WAVELET: {
-            const std::string fault = stepFault(*images[k], wanted[k], k == 0 ? "the step" : "the normals' step");
+            const std::string fault =
+                stepFault(*images[k], wanted[k], k == 0 ? "the step" : "the normals' step");
             if (!fault.empty()) return EncodeError{EncodeError::Kind::BadSettings, fault, 0};
             content[k] = waveletContent(*images[k], wanted[k]);
             written[k] = wanted[k];
@@ -268,13 +279,17 @@ Outcome<EncodedFile> Encoder::encode(const Settings& settings) const
         case GIM_CODING_RAW12: {
             Raw12 raw = raw12Content(*samples[k], images[k]->grid);
             if (raw.content.empty())
-                return EncodeError{EncodeError::Kind::BadSettings, "the samples are too large for 12-bit coding", 0};
+                return EncodeError{EncodeError::Kind::BadSettings,
+                                   "the samples are too large for 12-bit coding", 0};
             content[k] = std::move(raw.content);
             written[k] = raw.step;
             break;
         }
-        case GIM_CODING_FLOAT: content[k] = floatContent(*samples[k], images[k]->grid); break;
-        default: return EncodeError{EncodeError::Kind::BadSettings, "no such coding", 0};
+        case GIM_CODING_FLOAT:
+            content[k] = floatContent(*samples[k], images[k]->grid);
+            break;
+        default:
+            return EncodeError{EncodeError::Kind::BadSettings, "no such coding", 0};
         }
     }
     file.step = written[0];

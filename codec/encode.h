@@ -15,11 +15,11 @@ namespace gimg::codec {
 /// What is to be written. The spans must stay valid while an Encoder prepares them, no longer.
 struct Source
 {
-    std::uint32_t grid = 0;           ///< samples a side, 2^j + 1, 3 to 4097, at least seam.lowest
+    std::uint32_t grid = 0; ///< samples a side, 2^j + 1, 3 to 4097, at least seam.lowest
     Seam seam;
-    std::span<const float> xyz;       ///< 3 grid^2 numbers
-    std::uint32_t normalGrid = 0;     ///< 0: no normals; otherwise as grid
-    std::span<const float> normals;   ///< 3 normalGrid^2 numbers, vectors of unit length
+    std::span<const float> xyz;     ///< 3 grid^2 numbers
+    std::uint32_t normalGrid = 0;   ///< 0: no normals; otherwise as grid
+    std::span<const float> normals; ///< 3 normalGrid^2 numbers, vectors of unit length
 };
 
 struct Settings

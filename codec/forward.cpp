@@ -43,7 +43,8 @@ private:
         static const auto table = [] {
             std::array<double, (1u << (kProbabilityBits - kTableShift)) + 1> costs{};
             const double unit = static_cast<double>(1u << (kProbabilityBits - kTableShift));
-            for (std::size_t k = 0; k < costs.size(); ++k) costs[k] = -std::log2((static_cast<double>(k) + 0.5) / unit);
+            for (std::size_t k = 0; k < costs.size(); ++k)
+                costs[k] = -std::log2((static_cast<double>(k) + 0.5) / unit);
             return costs;
         }();
         return table;
@@ -188,7 +189,8 @@ float smallestStep(const TransformedImage& image)
     double detail = 0;
     for (const auto& bands : image.largestOfBand)
         for (const double value : bands) detail = std::max(detail, value);
-    const double needed = std::max(detail / (kMaxDetail - 1), image.largest / (static_cast<double>(kMaxCoarse) / 4));
+    const double needed =
+        std::max(detail / (kMaxDetail - 1), image.largest / (static_cast<double>(kMaxCoarse) / 4));
     const float step = std::nextafter(static_cast<float>(needed), kLargestStep);
     return std::max(step, kSmallestStep);
 }

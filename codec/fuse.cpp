@@ -18,14 +18,15 @@ void smoothAlongBorder(const double* from, double* to, std::uint32_t size)
 
 // Adds weight * displacement to the ring of samples `r` steps inside the border. A ring's corner has two
 // feet on the border, and takes the mean.
-void displaceRing(double* samples, std::uint32_t grid, std::uint32_t r, double weight, const double* displacement)
+void displaceRing(double* samples, std::uint32_t grid, std::uint32_t r, double weight,
+                  const double* displacement)
 {
     const std::uint32_t last = grid - 1;
     const std::size_t pitch = grid;
     const double* bottom = displacement;
     const double* right = displacement + last;
-    const double* top = displacement + 2 * std::size_t{last};   // indexed by last - i
-    const double* left = displacement + 3 * std::size_t{last};  // indexed by last - j
+    const double* top = displacement + 2 * std::size_t{last};  // indexed by last - i
+    const double* left = displacement + 3 * std::size_t{last}; // indexed by last - j
     const std::uint32_t far = last - r;
     for (std::uint32_t k = r + 1; k < far; ++k) {
         samples[r * pitch + k] += weight * bottom[k];
@@ -41,7 +42,8 @@ void displaceRing(double* samples, std::uint32_t grid, std::uint32_t r, double w
 
 } // namespace
 
-void fuseBorder(double* samples, std::uint32_t grid, const std::uint32_t* classes, bool diffuse, double* scratch)
+void fuseBorder(double* samples, std::uint32_t grid, const std::uint32_t* classes, bool diffuse,
+                double* scratch)
 {
     const std::uint32_t size = borderSize(grid);
     double* sum = scratch;

@@ -11,6 +11,7 @@ constexpr std::uint32_t kDiffusionRings = 16;
 /// @param samples  grid x grid
 /// @param classes  borderClasses() of the grid
 /// @param scratch  2 * borderSize(grid) numbers
-void fuseBorder(double* samples, std::uint32_t grid, const std::uint32_t* classes, bool diffuse, double* scratch);
+void fuseBorder(double* samples, std::uint32_t grid, const std::uint32_t* classes, bool diffuse,
+                double* scratch);
 
 } // namespace gimg::codec

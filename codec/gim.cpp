@@ -69,8 +69,8 @@ std::uint64_t workspaceOf(const File& file)
     const std::uint32_t widest = file.normals.grid > grid ? file.normals.grid : grid;
     const std::uint64_t seam = Arena::sizeOf<gim_side>(sides) + Arena::sizeOf<std::uint32_t>(2 * sides) +
                                Arena::sizeOf<std::uint32_t>(borderSize(widest));
-    const std::uint64_t mesh =
-        Arena::sizeOf<std::uint32_t>(borderSize(grid)) + Arena::sizeOf<std::uint32_t>(std::size_t{grid} * grid);
+    const std::uint64_t mesh = Arena::sizeOf<std::uint32_t>(borderSize(grid)) +
+                               Arena::sizeOf<std::uint32_t>(std::size_t{grid} * grid);
     std::uint64_t most = mesh;
     const std::uint64_t geometry = imageWorkspace(file.geometry);
     const std::uint64_t normals = file.normals.grid != 0 ? imageWorkspace(file.normals) : 0;
@@ -171,8 +171,7 @@ ReadStatus openLevel(const File& file, std::uint32_t flags, std::uint32_t level,
     if (status != ReadStatus::Ok) return status;
     const std::uint32_t samples = out->grid * out->grid, border = borderSize(out->grid);
     if ((flags & GIM_NO_FUSE) != 0) out->classes = nullptr;
-    out->vertices =
-        out->classes == nullptr ? samples : samples - border + countClasses(out->classes, border);
+    out->vertices = out->classes == nullptr ? samples : samples - border + countClasses(out->classes, border);
     return ReadStatus::Ok;
 }
 
@@ -183,12 +182,18 @@ extern "C" {
 const char* gim_status_text(gim_status status)
 {
     switch (status) {
-    case GIM_OK: return "no error";
-    case GIM_MORE_INPUT: return "the file is cut short";
-    case GIM_CORRUPT: return "the file is damaged or is not a .gim file";
-    case GIM_UNSUPPORTED: return "the file needs a newer version of this reader";
-    case GIM_LIMIT: return "the file exceeds the limits set for it";
-    case GIM_MISUSE: return "the decoder was called with a wrong argument";
+    case GIM_OK:
+        return "no error";
+    case GIM_MORE_INPUT:
+        return "the file is cut short";
+    case GIM_CORRUPT:
+        return "the file is damaged or is not a .gim file";
+    case GIM_UNSUPPORTED:
+        return "the file needs a newer version of this reader";
+    case GIM_LIMIT:
+        return "the file exceeds the limits set for it";
+    case GIM_MISUSE:
+        return "the decoder was called with a wrong argument";
     }
     return "unknown status";
 }
@@ -227,7 +232,8 @@ size_t gim_workspace_size(const gim_info* info)
 
 gim_status gim_read_chunk(const void* bytes, size_t size, uint32_t index, gim_chunk* chunk)
 {
-    if ((bytes == nullptr && size > 0) || chunk == nullptr || chunk->size < sizeof(gim_chunk)) return GIM_MISUSE;
+    if ((bytes == nullptr && size > 0) || chunk == nullptr || chunk->size < sizeof(gim_chunk))
+        return GIM_MISUSE;
     ChunkWalk walk({static_cast<const std::uint8_t*>(bytes), size});
     ReadStatus status = walk.open();
     if (status != ReadStatus::Ok) return toPublic(status);
@@ -295,7 +301,8 @@ gim_status gim_decode_normals(const void* bytes, size_t size, const gim_limits* 
 gim_status gim_mesh_size(const void* bytes, size_t size, const gim_limits* limits, uint32_t flags,
                          uint32_t level, void* workspace, size_t workspace_size, gim_mesh_counts* counts)
 {
-    if (workspace == nullptr || counts == nullptr || counts->size < sizeof(gim_mesh_counts)) return GIM_MISUSE;
+    if (workspace == nullptr || counts == nullptr || counts->size < sizeof(gim_mesh_counts))
+        return GIM_MISUSE;
     File file;
     ReadStatus status = openFile(bytes, size, limits, &file);
     if (status != ReadStatus::Ok) return toPublic(status);

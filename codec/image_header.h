@@ -15,8 +15,8 @@ struct ImageHeader
 {
     std::uint32_t grid = 0;
     gim_coding coding = GIM_CODING_WAVELET;
-    float step = 0;         ///< wavelet: quantisation step; raw12: distance of neighbouring integers
-    std::uint8_t shifts = 0; ///< wavelet: see Dequantizer
+    float step = 0;                ///< wavelet: quantisation step; raw12: distance of neighbouring integers
+    std::uint8_t shifts = 0;       ///< wavelet: see Dequantizer
     float least[kComponents] = {}; ///< raw12: what integer 0 stands for
     format::ByteSpan samples;      ///< the coded samples
     std::size_t fixedBytes = 0;

@@ -15,14 +15,20 @@ constexpr int kMixShift = 15;
 constexpr std::int32_t kMixLimit = 16 << 16;
 
 /// 2^15 / (1 + exp(-x)) at x = -8, -7.5 .. 8.
-constexpr std::int32_t kLogistic[33] = {11, 18, 30, 49, 81, 133, 219, 360, 589, 961, 1554, 2486, 3906, 5978, 8813, 12371, 16384, 20397, 23955, 26790, 28862, 30282, 31214, 31807, 32179, 32408, 32549, 32635, 32687, 32719, 32738, 32750, 32757};
+constexpr std::int32_t kLogistic[33] = {11,    18,    30,    49,    81,    133,   219,   360,   589,
+                                        961,   1554,  2486,  3906,  5978,  8813,  12371, 16384, 20397,
+                                        23955, 26790, 28862, 30282, 31214, 31807, 32179, 32408, 32549,
+                                        32635, 32687, 32719, 32738, 32750, 32757};
 
 constexpr std::uint32_t squash(int stretched)
 {
-    const int clamped = stretched > kStretchLimit ? kStretchLimit : stretched < -kStretchLimit ? -kStretchLimit : stretched;
+    const int clamped = stretched > kStretchLimit    ? kStretchLimit
+                        : stretched < -kStretchLimit ? -kStretchLimit
+                                                     : stretched;
     const int offset = clamped + kStretchLimit + 1;
     const int cell = offset >> 7, within = offset & 127;
-    return static_cast<std::uint32_t>((kLogistic[cell] * (128 - within) + kLogistic[cell + 1] * within + 64) >> 7);
+    return static_cast<std::uint32_t>(
+        (kLogistic[cell] * (128 - within) + kLogistic[cell + 1] * within + 64) >> 7);
 }
 
 /// stretch() of the middles of 4096 equal intervals of probability: the least number whose squash()
@@ -71,7 +77,8 @@ bool codeMixed(Coder& coder, BitModel* const (&models)[Count], MixWeights<Count>
     if (!Coder::kAdapts) return one;
     const int error = (one ? 0 : 1 << kProbabilityBits) - static_cast<int>(zero);
     for (unsigned k = 0; k < Count; ++k) {
-        const std::int32_t moved = weights.weight[k] + ((stretched[k] * error + (1 << (kMixShift - 1))) >> kMixShift);
+        const std::int32_t moved =
+            weights.weight[k] + ((stretched[k] * error + (1 << (kMixShift - 1))) >> kMixShift);
         weights.weight[k] = moved > kMixLimit ? kMixLimit : moved < -kMixLimit ? -kMixLimit : moved;
         models[k]->update(one);
     }

@@ -54,8 +54,10 @@ std::string seamFault(const Seam& seam)
         }
         used += side.length;
     }
-    if (used != total) return "the sides are " + std::to_string(used) + " long, the border " + std::to_string(total);
-    if (std::any_of(lengthOfOpen.begin(), lengthOfOpen.end(), [](std::uint32_t length) { return length != 0; }))
+    if (used != total)
+        return "the sides are " + std::to_string(used) + " long, the border " + std::to_string(total);
+    if (std::any_of(lengthOfOpen.begin(), lengthOfOpen.end(),
+                    [](std::uint32_t length) { return length != 0; }))
         return "a path has no mate";
     return {};
 }
@@ -107,10 +109,14 @@ bool seamIsSimplicial(const gim_side* sides, std::uint32_t count, std::uint32_t 
         // (u, v): along the side and away from it.
         const auto inner = [&](std::uint32_t position, std::uint32_t u) {
             switch (side) {
-            case 0: return toInside(position, u, 1);
-            case 1: return toInside(position, last - 1, u);
-            case 2: return toInside(position, last - u, last - 1);
-            default: return toInside(position, 1, last - u);
+            case 0:
+                return toInside(position, u, 1);
+            case 1:
+                return toInside(position, last - 1, u);
+            case 2:
+                return toInside(position, last - u, last - 1);
+            default:
+                return toInside(position, 1, last - u);
             }
         };
         inner(side * last, 1);

@@ -10,8 +10,8 @@ namespace gimg::codec {
 /// Models of the seam's word.
 struct SeamModels
 {
-    BitModel isMate[2];      ///< [the side before opened a path]
-    BitModel isBoundary[2];  ///< [the side before was boundary]
+    BitModel isMate[2];     ///< [the side before opened a path]
+    BitModel isBoundary[2]; ///< [the side before was boundary]
     ExpGolombModels<15> rank;
     ExpGolombModels<15> length;
 };
@@ -54,9 +54,11 @@ bool codeSeam(Coder& coder, SeamView& seam, gim_side* sides, std::uint32_t capac
             --openCount;
             reserved -= side.length;
         } else {
-            const bool boundary =
-                left == 1 || coder.bit(models.isBoundary[before == GIM_SIDE_BOUNDARY], side.kind == GIM_SIDE_BOUNDARY);
-            const auto length = static_cast<std::uint32_t>(codeExpGolomb(coder, models.length, std::uint64_t{side.length} - 1)) + 1;
+            const bool boundary = left == 1 || coder.bit(models.isBoundary[before == GIM_SIDE_BOUNDARY],
+                                                         side.kind == GIM_SIDE_BOUNDARY);
+            const auto length = static_cast<std::uint32_t>(
+                                    codeExpGolomb(coder, models.length, std::uint64_t{side.length} - 1)) +
+                                1;
             side = {paths++, length, boundary ? GIM_SIDE_BOUNDARY : GIM_SIDE_FIRST};
             if (length > (boundary ? left : left / 2)) return coder.fail(), true;
             if (!boundary) {

@@ -46,8 +46,8 @@ std::uint32_t countClasses(const std::uint32_t* classes, std::uint32_t size)
 }
 
 std::uint32_t numberVertices(std::uint32_t grid, std::uint32_t stride, std::uint32_t fineGrid,
-                             const std::uint32_t* classes, std::uint32_t* scratch, std::uint32_t* vertexOfSample,
-                             std::uint32_t* sampleOfVertex)
+                             const std::uint32_t* classes, std::uint32_t* scratch,
+                             std::uint32_t* vertexOfSample, std::uint32_t* sampleOfVertex)
 {
     std::uint32_t* vertexOfClass = scratch;
     for (std::uint32_t k = 0; k < borderSize(grid); ++k) vertexOfClass[k] = kNone;

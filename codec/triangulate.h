@@ -14,8 +14,8 @@ namespace gimg::codec {
 /// @param sampleOfVertex  one entry a vertex, or nullptr
 /// @return how many vertices there are
 std::uint32_t numberVertices(std::uint32_t grid, std::uint32_t stride, std::uint32_t fineGrid,
-                             const std::uint32_t* classes, std::uint32_t* scratch, std::uint32_t* vertexOfSample,
-                             std::uint32_t* sampleOfVertex);
+                             const std::uint32_t* classes, std::uint32_t* scratch,
+                             std::uint32_t* vertexOfSample, std::uint32_t* sampleOfVertex);
 
 /// Splits each cell into two triangles, counter-clockwise. Cells at the border are split so that no two
 /// seam edges can become one; the others along their shorter diagonal.

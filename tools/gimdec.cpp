@@ -27,10 +27,12 @@ std::optional<int> parseArguments(int argc, char** argv, Arguments& a)
     app.set_version_flag("--version", GIMG_VERSION);
     app.add_option("INPUT", a.input, "file to decode, .gim")->required();
     app.add_option("OUTPUT", a.output, "mesh to write: .ply, .obj, .off or .stl")->required();
-    app.add_option("--level", a.level, "level of detail: 0 (default) is the finest, each further one has half the grid");
+    app.add_option("--level", a.level,
+                   "level of detail: 0 (default) is the finest, each further one has half the grid");
     app.add_flag("--no-fuse", a.noFuse, "leave the seam open, as it was coded: shows the cracks");
     app.add_flag("--no-diffuse", a.noDiffuse, "fuse the seam without spreading the error: shows the steps");
-    app.add_option("--image", a.image, "also write the geometry image: .png (16 bits a channel) or .exr (exact)");
+    app.add_option("--image", a.image,
+                   "also write the geometry image: .png (16 bits a channel) or .exr (exact)");
     app.add_option("--normal-map", a.normalMap, "also write the normal image, .png");
     app.add_option("--json", a.json, "write a report to this file, or - for standard output");
     return cli::parse(app, argc, argv);
@@ -43,7 +45,8 @@ bool endsWith(const std::string& text, const std::string& end)
     return text.size() >= end.size() && text.compare(text.size() - end.size(), end.size(), end) == 0;
 }
 
-// The normal of each vertex, where the normal image has a sample at it: if it is at least as fine as the mesh.
+// The normal of each vertex, where the normal image has a sample at it: if it is at least as fine as the
+// mesh.
 std::vector<Vec3> vertexNormals(const std::vector<uint8_t>& file, const DecodedImages& images, unsigned level,
                                 unsigned flags)
 {
@@ -51,11 +54,12 @@ std::vector<Vec3> vertexNormals(const std::vector<uint8_t>& file, const DecodedI
     if (normalGrid == 0 || normalGrid - 1 < (grid - 1) >> level) return {};
     std::vector<unsigned char> work(gim_workspace_size(&images.info));
     gim_mesh_counts counts{sizeof counts, 0, 0, 0};
-    if (gim_mesh_size(file.data(), file.size(), nullptr, flags, level, work.data(), work.size(), &counts) != GIM_OK)
+    if (gim_mesh_size(file.data(), file.size(), nullptr, flags, level, work.data(), work.size(), &counts) !=
+        GIM_OK)
         return {};
     std::vector<uint32_t> samples(counts.vertices);
-    if (gim_build_mesh(file.data(), file.size(), nullptr, flags, level, work.data(), work.size(), nullptr, nullptr,
-                       samples.data(), nullptr) != GIM_OK)
+    if (gim_build_mesh(file.data(), file.size(), nullptr, flags, level, work.data(), work.size(), nullptr,
+                       nullptr, samples.data(), nullptr) != GIM_OK)
         return {};
     std::vector<Vec3> normals;
     normals.reserve(samples.size());
@@ -105,7 +109,8 @@ int main(int argc, char** argv)
         return cli::fail("gimdec", usage ? cli::Usage : cli::Refused, written.error().message);
     }
     if (!a.image.empty()) {
-        const Status status = exr ? writeExr(images->geometry, a.image) : writePng16(images->geometry, a.image);
+        const Status status =
+            exr ? writeExr(images->geometry, a.image) : writePng16(images->geometry, a.image);
         if (!status) return refuse(status.error().message);
     }
     if (!a.normalMap.empty()) {

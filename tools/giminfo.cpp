@@ -3,6 +3,7 @@
 
 #include <gim.h>
 
+#include <charconv>
 #include <iomanip>
 #include <sstream>
 
@@ -13,9 +14,12 @@ using namespace gimg;
 const char* nameOf(gim_coding coding)
 {
     switch (coding) {
-    case GIM_CODING_WAVELET: return "wavelet";
-    case GIM_CODING_RAW12: return "raw12";
-    case GIM_CODING_FLOAT: return "float";
+    case GIM_CODING_WAVELET:
+        return "wavelet";
+    case GIM_CODING_RAW12:
+        return "raw12";
+    case GIM_CODING_FLOAT:
+        return "float";
     }
     return "unknown";
 }
@@ -23,10 +27,14 @@ const char* nameOf(gim_coding coding)
 const char* contentOf(char type)
 {
     switch (type) {
-    case 'S': return "seam";
-    case 'G': return "geometry";
-    case 'n': return "normals";
-    default: return "unknown, skipped";
+    case 'S':
+        return "seam";
+    case 'G':
+        return "geometry";
+    case 'n':
+        return "normals";
+    default:
+        return "unknown, skipped";
     }
 }
 
@@ -80,12 +88,22 @@ gim_status summarize(const std::vector<uint8_t>& file, Summary& summary)
     return GIM_OK;
 }
 
+// The float's value with no more digits than it needs, where its exact value would print as 0.0099999998.
+double shortest(float value)
+{
+    char text[32];
+    const char* end = std::to_chars(text, text + sizeof text, value).ptr;
+    double rounded = 0;
+    std::from_chars(text, end, rounded);
+    return rounded;
+}
+
 nlohmann::ordered_json imageJson(uint32_t grid, gim_coding coding, float step, uint64_t bytes)
 {
     nlohmann::ordered_json json;
     json["grid"] = grid;
     json["coding"] = nameOf(coding);
-    if (coding != GIM_CODING_FLOAT) json["step"] = step;
+    if (coding != GIM_CODING_FLOAT) json["step"] = shortest(step);
     json["bytes"] = bytes;
     return json;
 }
@@ -108,7 +126,8 @@ nlohmann::ordered_json jsonOf(const Summary& s, std::size_t bytes)
     json["geometry"] = imageJson(s.info.grid, s.info.coding, s.info.step, s.info.geometry_bytes);
     json["normals"] = nullptr;
     if (s.info.normal_grid != 0)
-        json["normals"] = imageJson(s.info.normal_grid, s.info.normal_coding, s.info.normal_step, s.info.normal_bytes);
+        json["normals"] =
+            imageJson(s.info.normal_grid, s.info.normal_coding, s.info.normal_step, s.info.normal_bytes);
     nlohmann::ordered_json seam;
     seam["start"] = s.seam.start;
     seam["paths"] = s.seam.paths;
@@ -142,8 +161,10 @@ void print(const Summary& s, std::size_t bytes)
 {
     std::cout << "file       " << bytes << " bytes, format version " << s.info.version << '\n';
     printImage("geometry", s.info.grid, s.info.coding, s.info.step);
-    if (s.info.normal_grid != 0) printImage("normals", s.info.normal_grid, s.info.normal_coding, s.info.normal_step);
-    std::cout << "levels     " << s.info.levels << ", the coarsest " << s.info.lowest << " x " << s.info.lowest << '\n'
+    if (s.info.normal_grid != 0)
+        printImage("normals", s.info.normal_grid, s.info.normal_coding, s.info.normal_step);
+    std::cout << "levels     " << s.info.levels << ", the coarsest " << s.info.lowest << " x "
+              << s.info.lowest << '\n'
               << "surface    genus " << s.seam.genus << ", " << s.seam.boundary_loops << " boundary loop"
               << (s.seam.boundary_loops == 1 ? "" : "s") << '\n'
               << "seam       " << s.word() << '\n'
@@ -152,8 +173,9 @@ void print(const Summary& s, std::size_t bytes)
               << "lengths   ";
     for (const gim_side& side : s.sides)
         if (side.kind != GIM_SIDE_MATE) std::cout << ' ' << labelOf(side) << '=' << side.length;
-    std::cout << "\nbytes      container " << s.info.container_bytes << ", seam " << s.info.seam_bytes << ", geometry "
-              << s.info.geometry_bytes << ", normals " << s.info.normal_bytes << ", other " << s.info.other_bytes << '\n';
+    std::cout << "\nbytes      container " << s.info.container_bytes << ", seam " << s.info.seam_bytes
+              << ", geometry " << s.info.geometry_bytes << ", normals " << s.info.normal_bytes << ", other "
+              << s.info.other_bytes << '\n';
     for (const gim_chunk& chunk : s.chunks)
         std::cout << "chunk      " << chunk.type << " (" << contentOf(chunk.type) << "): " << chunk.length
                   << " bytes at " << chunk.offset << ", " << chunk.total << " in all\n";

@@ -38,8 +38,12 @@ TEST(RangeCoder, RoundTripOfBitsNumbersAndCarries)
         ExpGolombModels<32> modelsAgain;
         for (std::uint32_t k = 0; k < count; ++k) {
             ASSERT_EQ(decoder.bit(again), bits[k]) << "seed " << seed << " bit " << k;
-            if (k % 7 == 0) { ASSERT_EQ(codeExpGolomb(decoder, modelsAgain, 0), numbers[k]); }
-            if (k % 11 == 0) { ASSERT_EQ(decoder.raw(9), numbers[k] & 511u); }
+            if (k % 7 == 0) {
+                ASSERT_EQ(codeExpGolomb(decoder, modelsAgain, 0), numbers[k]);
+            }
+            if (k % 11 == 0) {
+                ASSERT_EQ(decoder.raw(9), numbers[k] & 511u);
+            }
         }
         EXPECT_TRUE(decoder.finished()) << "seed " << seed;
     }
@@ -47,7 +51,8 @@ TEST(RangeCoder, RoundTripOfBitsNumbersAndCarries)
 
 TEST(RangeCoder, CostsWhatTheProbabilitiesSay)
 {
-    // 20,000 bits, 5 % ones: 0.2864 bits each, 716 bytes; following the last few bits costs up to a tenth more.
+    // 20,000 bits, 5 % ones: 0.2864 bits each, 716 bytes; following the last few bits costs up to a tenth
+    // more.
     Dice dice(1);
     RangeEncoder encoder;
     BitModel model;
@@ -84,8 +89,12 @@ TEST(Mixer, SquashIsTheLogisticFunctionAndStretchItsInverse)
         EXPECT_NEAR(squash(x), 32768 / (1 + std::exp(-x / 256.0)), 110) << x;
     for (std::uint32_t k = 0; k < 4096; ++k) {
         const double p = (8 * k + 4) / 32768.0;
-        if (p > 0.001 && p < 0.999) { EXPECT_NEAR(kStretch.value[k], 256 * std::log(p / (1 - p)), 24) << k; }
-        if (k > 0) { EXPECT_GE(kStretch.value[k], kStretch.value[k - 1]); }
+        if (p > 0.001 && p < 0.999) {
+            EXPECT_NEAR(kStretch.value[k], 256 * std::log(p / (1 - p)), 24) << k;
+        }
+        if (k > 0) {
+            EXPECT_GE(kStretch.value[k], kStretch.value[k - 1]);
+        }
     }
 }
 
@@ -122,8 +131,9 @@ TEST(Lifting, PolynomialsLeaveNoDetails)
     };
     EXPECT_LT(details([](double, double) { return 1.0; }, 0), 1e-10);
     EXPECT_LT(details([](double s, double t) { return s * s * s - 2 * s * t + t * t; }, 5), 1e-10);
-    EXPECT_GT(details([](double s, double) { return s * s * s * s; }, 5), 1e-7); // the fifth moment does not vanish
-    EXPECT_GT(details([](double s, double) { return s; }, 0), 1e-3);            // mirrored, a slope has a kink
+    EXPECT_GT(details([](double s, double) { return s * s * s * s; }, 5),
+              1e-7);                                                 // the fifth moment does not vanish
+    EXPECT_GT(details([](double s, double) { return s; }, 0), 1e-3); // mirrored, a slope has a kink
 }
 
 TEST(Transform, BandsAreNearlyOrthonormal)

@@ -69,7 +69,8 @@ TEST(Wavelet, EncodingIsRepeatable)
 {
     const std::vector<float> xyz = torusImage(65);
     const Source source = torusSource(xyz, 65);
-    EXPECT_EQ(encoded(source, {GIM_CODING_WAVELET, 0.02f, 0}), encoded(source, {GIM_CODING_WAVELET, 0.02f, 0}));
+    EXPECT_EQ(encoded(source, {GIM_CODING_WAVELET, 0.02f, 0}),
+              encoded(source, {GIM_CODING_WAVELET, 0.02f, 0}));
 }
 
 TEST(Overhead, IsBelow48BytesInEveryCoding)
@@ -119,14 +120,16 @@ TEST(Info, SaysWhatTheFileHolds)
     gim_seam seam{};
     seam.size = sizeof seam;
     gim_side sides[4];
-    ASSERT_EQ(gim_read_seam(bytes.data(), bytes.size(), nullptr, work.data(), work.size(), &seam, sides, 4), GIM_OK);
+    ASSERT_EQ(gim_read_seam(bytes.data(), bytes.size(), nullptr, work.data(), work.size(), &seam, sides, 4),
+              GIM_OK);
     EXPECT_EQ(seam.sides, 4u);
     EXPECT_EQ(seam.genus, 1u);
     EXPECT_EQ(seam.boundary_loops, 0u);
     EXPECT_EQ(seam.cut_nodes, 1u);
     EXPECT_EQ(sides[3].path, 1u);
     EXPECT_EQ(sides[3].kind, static_cast<std::uint32_t>(GIM_SIDE_MATE));
-    EXPECT_EQ(gim_read_seam(bytes.data(), bytes.size(), nullptr, work.data(), work.size(), &seam, sides, 3), GIM_MISUSE);
+    EXPECT_EQ(gim_read_seam(bytes.data(), bytes.size(), nullptr, work.data(), work.size(), &seam, sides, 3),
+              GIM_MISUSE);
 }
 
 TEST(Fuse, MakesMatesEqualToTheBitAndLeavesBoundariesAlone)
@@ -138,15 +141,19 @@ TEST(Fuse, MakesMatesEqualToTheBitAndLeavesBoundariesAlone)
     ASSERT_EQ(seamFault(source.seam), "");
     const auto bytes = encoded(source, {GIM_CODING_WAVELET, 0.01f, 0});
     const std::vector<std::uint32_t> classes = borderClasses(source.seam, grid);
-    std::vector<float> fused = decoded(bytes), open = decoded(bytes, GIM_NO_FUSE), undiffused = decoded(bytes, GIM_NO_DIFFUSE);
+    std::vector<float> fused = decoded(bytes), open = decoded(bytes, GIM_NO_FUSE),
+                       undiffused = decoded(bytes, GIM_NO_DIFFUSE);
     std::vector<int> members(classes.size());
     for (const std::uint32_t c : classes) ++members[c];
     int glued = 0;
     for (std::uint32_t k = 0; k < borderSize(grid); ++k) {
-        const std::size_t here = 3 * std::size_t{borderSample(grid, k)}, first = 3 * std::size_t{borderSample(grid, classes[k])};
+        const std::size_t here = 3 * std::size_t{borderSample(grid, k)},
+                          first = 3 * std::size_t{borderSample(grid, classes[k])};
         EXPECT_EQ(std::memcmp(&fused[here], &fused[first], 12), 0) << k;
         EXPECT_EQ(std::memcmp(&fused[here], &undiffused[here], 12), 0) << k;
-        if (members[classes[k]] == 1) { EXPECT_EQ(std::memcmp(&fused[here], &open[here], 12), 0) << k; }
+        if (members[classes[k]] == 1) {
+            EXPECT_EQ(std::memcmp(&fused[here], &open[here], 12), 0) << k;
+        }
         if (std::memcmp(&open[here], &open[first], 12) != 0) ++glued;
     }
     EXPECT_GT(glued, 50);
@@ -170,15 +177,18 @@ TEST(Diffuse, FollowsItsFormula)
     }
     for (std::uint32_t r = 1; r < 16; ++r) {
         std::vector<double> next(size);
-        for (std::uint32_t k = 0; k < size; ++k) next[k] = (d[(k + size - 1) % size] + 2 * d[k] + d[(k + 1) % size]) / 4;
+        for (std::uint32_t k = 0; k < size; ++k)
+            next[k] = (d[(k + size - 1) % size] + 2 * d[k] + d[(k + 1) % size]) / 4;
         d = next;
         const double w = std::pow(1 - r / 16.0, 2);
-        const auto moved = [&](std::uint32_t i, std::uint32_t j) { return double{*at(fused, grid, i, j)} - *at(open, grid, i, j); };
+        const auto moved = [&](std::uint32_t i, std::uint32_t j) {
+            return double{*at(fused, grid, i, j)} - *at(open, grid, i, j);
+        };
         EXPECT_NEAR(moved(16, r), w * d[16], 1e-6) << r;                       // over the bottom side
-        EXPECT_NEAR(moved(last - r, 17 < r ? r : 16), w * d[last + 16], 1e-6);  // right
-        EXPECT_NEAR(moved(16, last - r), w * d[2 * last + (last - 16)], 1e-6);  // top
-        EXPECT_NEAR(moved(r, 16), w * d[3 * last + (last - 16)], 1e-6);         // left
-        EXPECT_NEAR(moved(r, r), w * (d[r] + d[4 * last - r]) / 2, 1e-6);       // two feet
+        EXPECT_NEAR(moved(last - r, 17 < r ? r : 16), w * d[last + 16], 1e-6); // right
+        EXPECT_NEAR(moved(16, last - r), w * d[2 * last + (last - 16)], 1e-6); // top
+        EXPECT_NEAR(moved(r, 16), w * d[3 * last + (last - 16)], 1e-6);        // left
+        EXPECT_NEAR(moved(r, r), w * (d[r] + d[4 * last - r]) / 2, 1e-6);      // two feet
         EXPECT_NEAR(moved(last - r, r), w * (d[last - r] + d[last + r]) / 2, 1e-6);
     }
     EXPECT_EQ(*at(fused, grid, 16, 16), *at(open, grid, 16, 16));
@@ -189,7 +199,8 @@ TEST(Diffuse, ReducesTheStepNextToTheSeam)
     const std::uint32_t grid = 129;
     const std::vector<float> xyz = bumpyImage(grid, 5);
     const auto bytes = encoded(torusSource(xyz, grid), {GIM_CODING_WAVELET, 0.005f, 0});
-    std::vector<float> smooth = decoded(bytes), plain = decoded(bytes, GIM_NO_DIFFUSE), open = decoded(bytes, GIM_NO_FUSE);
+    std::vector<float> smooth = decoded(bytes), plain = decoded(bytes, GIM_NO_DIFFUSE),
+                       open = decoded(bytes, GIM_NO_FUSE);
     const auto step = [&](std::vector<float>& image) {
         double sum = 0;
         for (std::uint32_t i = 20; i + 20 < grid; ++i)
@@ -265,14 +276,17 @@ TEST(Mesh, OfEveryLevelIsATorus)
     const std::vector<float> out = decoded(bytes);
     for (std::uint32_t level = 0; level < info.levels; ++level) {
         gim_mesh_counts counts{sizeof counts, 0, 0, 0};
-        ASSERT_EQ(gim_mesh_size(bytes.data(), bytes.size(), nullptr, 0, level, work.data(), work.size(), &counts), GIM_OK);
+        ASSERT_EQ(
+            gim_mesh_size(bytes.data(), bytes.size(), nullptr, 0, level, work.data(), work.size(), &counts),
+            GIM_OK);
         const std::uint32_t cells = 64u >> level;
         EXPECT_EQ(counts.grid, cells + 1);
         EXPECT_EQ(counts.vertices, cells * cells);
         EXPECT_EQ(counts.triangles, 2 * cells * cells);
-        std::vector<std::uint32_t> ofSample(counts.grid * counts.grid), ofVertex(counts.vertices), triangles(3 * counts.triangles);
-        ASSERT_EQ(gim_build_mesh(bytes.data(), bytes.size(), nullptr, 0, level, work.data(), work.size(), out.data(),
-                                 ofSample.data(), ofVertex.data(), triangles.data()),
+        std::vector<std::uint32_t> ofSample(counts.grid * counts.grid), ofVertex(counts.vertices),
+            triangles(3 * counts.triangles);
+        ASSERT_EQ(gim_build_mesh(bytes.data(), bytes.size(), nullptr, 0, level, work.data(), work.size(),
+                                 out.data(), ofSample.data(), ofVertex.data(), triangles.data()),
                   GIM_OK);
         // Each directed edge once, and its reverse too: closed and oriented.
         std::set<std::pair<std::uint32_t, std::uint32_t>> edges;
@@ -299,9 +313,13 @@ TEST(Mesh, UnfusedKeepsEverySample)
     const gim_info info = probed(bytes);
     std::vector<unsigned char> work(info.workspace);
     gim_mesh_counts counts{sizeof counts, 0, 0, 0};
-    ASSERT_EQ(gim_mesh_size(bytes.data(), bytes.size(), nullptr, GIM_NO_FUSE, 0, work.data(), work.size(), &counts), GIM_OK);
+    ASSERT_EQ(
+        gim_mesh_size(bytes.data(), bytes.size(), nullptr, GIM_NO_FUSE, 0, work.data(), work.size(), &counts),
+        GIM_OK);
     EXPECT_EQ(counts.vertices, 33u * 33u);
-    EXPECT_EQ(gim_mesh_size(bytes.data(), bytes.size(), nullptr, 0, info.levels, work.data(), work.size(), &counts), GIM_MISUSE);
+    EXPECT_EQ(
+        gim_mesh_size(bytes.data(), bytes.size(), nullptr, 0, info.levels, work.data(), work.size(), &counts),
+        GIM_MISUSE);
 }
 
 TEST(Mesh, InteriorCellsUseTheShorterDiagonal)
@@ -317,10 +335,12 @@ TEST(Mesh, InteriorCellsUseTheShorterDiagonal)
     const auto bytes = encoded(source, {GIM_CODING_FLOAT, 0, 0});
     std::vector<unsigned char> work(probed(bytes).workspace);
     std::vector<std::uint32_t> triangles(3 * 2 * 64), vertexOf(81);
-    ASSERT_EQ(gim_build_mesh(bytes.data(), bytes.size(), nullptr, 0, 0, work.data(), work.size(), xyz.data(), vertexOf.data(),
-                             nullptr, triangles.data()),
+    ASSERT_EQ(gim_build_mesh(bytes.data(), bytes.size(), nullptr, 0, 0, work.data(), work.size(), xyz.data(),
+                             vertexOf.data(), nullptr, triangles.data()),
               GIM_OK);
-    const auto rising = [&](std::uint32_t i, std::uint32_t j) { return triangles[6 * (j * 8 + i) + 2] == vertexOf[(j + 1) * grid + i + 1]; };
+    const auto rising = [&](std::uint32_t i, std::uint32_t j) {
+        return triangles[6 * (j * 8 + i) + 2] == vertexOf[(j + 1) * grid + i + 1];
+    };
     for (std::uint32_t j = 0; j < 8; ++j)
         for (std::uint32_t i = 0; i < 8; ++i) {
             const bool horizontalSide = j == 0 || j == 7, corner = horizontalSide && (i == 0 || i == 7);
@@ -342,7 +362,8 @@ TEST(RateControl, NeverExceedsAndComesClose)
         const EncodedFile& file = std::get<EncodedFile>(outcome);
         EXPECT_LE(file.bytes.size(), target);
         EXPECT_GE(file.bytes.size() + std::max<std::size_t>(24, target / 100), target) << target;
-        EXPECT_EQ(file.bytes, std::get<EncodedFile>(encoder.encode({GIM_CODING_WAVELET, file.step, 0})).bytes);
+        EXPECT_EQ(file.bytes,
+                  std::get<EncodedFile>(encoder.encode({GIM_CODING_WAVELET, file.step, 0})).bytes);
         const double rms = rmsDistance(decoded(file.bytes, GIM_NO_FUSE), xyz);
         EXPECT_LT(rms, before);
         before = rms;
@@ -388,7 +409,8 @@ TEST(Encoder, RefusesBadSources)
     std::vector<float> xyz = torusImage(33);
     const auto messageOf = [](const Source& source) {
         auto outcome = Encoder::prepare(source);
-        return std::holds_alternative<EncodeError>(outcome) ? std::get<EncodeError>(outcome).message : std::string();
+        return std::holds_alternative<EncodeError>(outcome) ? std::get<EncodeError>(outcome).message
+                                                            : std::string();
     };
     Source source = torusSource(xyz, 33);
     EXPECT_EQ(messageOf(source), "");
@@ -402,15 +424,22 @@ TEST(Encoder, RefusesBadSources)
     xyz[3 * 40 + 1] = std::nanf("");
     EXPECT_EQ(messageOf(torusSource(xyz, 33)), "geometry: sample 40 is not finite");
     auto prepared = Encoder::prepare(torusSource(torusImage(33), 33));
-    EXPECT_TRUE(std::holds_alternative<EncodeError>(std::get<Encoder>(prepared).encode({GIM_CODING_WAVELET, 0, 0})));
-    EXPECT_TRUE(std::holds_alternative<EncodeError>(std::get<Encoder>(prepared).encode({GIM_CODING_WAVELET, 1e-20f, 0})));
+    EXPECT_TRUE(
+        std::holds_alternative<EncodeError>(std::get<Encoder>(prepared).encode({GIM_CODING_WAVELET, 0, 0})));
+    EXPECT_TRUE(std::holds_alternative<EncodeError>(
+        std::get<Encoder>(prepared).encode({GIM_CODING_WAVELET, 1e-20f, 0})));
 }
 
 class Misuse : public testing::Test
 {
 protected:
-    Misuse() : xyz(torusImage(33)), bytes(encoded(torusSource(xyz, 33), {GIM_CODING_WAVELET, 0.01f, 0})), info(probed(bytes)), work(info.workspace), out(xyz.size()) {}
-    gim_status decode(std::uint32_t flags, std::size_t workspace, float* to, const gim_limits* limits = nullptr)
+    Misuse()
+        : xyz(torusImage(33)), bytes(encoded(torusSource(xyz, 33), {GIM_CODING_WAVELET, 0.01f, 0})),
+          info(probed(bytes)), work(info.workspace), out(xyz.size())
+    {
+    }
+    gim_status decode(std::uint32_t flags, std::size_t workspace, float* to,
+                      const gim_limits* limits = nullptr)
     {
         return gim_decode_geometry(bytes.data(), bytes.size(), limits, flags, work.data(), workspace, to);
     }
@@ -427,7 +456,9 @@ TEST_F(Misuse, IsToldFromDamage)
     EXPECT_EQ(decode(4, work.size(), out.data()), GIM_MISUSE);
     EXPECT_EQ(decode(0, work.size() - 1, out.data()), GIM_MISUSE);
     EXPECT_EQ(decode(0, work.size(), nullptr), GIM_MISUSE);
-    EXPECT_EQ(gim_decode_normals(bytes.data(), bytes.size(), nullptr, 0, work.data(), work.size(), out.data()), GIM_MISUSE);
+    EXPECT_EQ(
+        gim_decode_normals(bytes.data(), bytes.size(), nullptr, 0, work.data(), work.size(), out.data()),
+        GIM_MISUSE);
     gim_info unset{};
     EXPECT_EQ(gim_probe(bytes.data(), bytes.size(), nullptr, &unset), GIM_MISUSE);
     EXPECT_EQ(gim_probe(nullptr, 1, nullptr, &info), GIM_MISUSE);
@@ -457,14 +488,18 @@ TEST_F(Misuse, LimitsAreKept)
 TEST_F(Misuse, UnalignedWorkspaceIsFine)
 {
     std::vector<unsigned char> odd(info.workspace + 1);
-    EXPECT_EQ(gim_decode_geometry(bytes.data(), bytes.size(), nullptr, 0, odd.data() + 1, info.workspace, out.data()), GIM_OK);
+    EXPECT_EQ(gim_decode_geometry(bytes.data(), bytes.size(), nullptr, 0, odd.data() + 1, info.workspace,
+                                  out.data()),
+              GIM_OK);
     EXPECT_EQ(out, decoded(bytes));
 }
 
 TEST_F(Misuse, EveryTruncationIsAnError)
 {
     for (std::size_t size = 0; size < bytes.size(); ++size) {
-        EXPECT_EQ(gim_decode_geometry(bytes.data(), size, nullptr, 0, work.data(), work.size(), out.data()), GIM_MORE_INPUT) << size;
+        EXPECT_EQ(gim_decode_geometry(bytes.data(), size, nullptr, 0, work.data(), work.size(), out.data()),
+                  GIM_MORE_INPUT)
+            << size;
     }
 }
 

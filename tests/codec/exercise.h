@@ -8,7 +8,8 @@
 #include <vector>
 
 /// Calls everything a file can be given to, with limits that keep it short. For fuzzing and mutation tests:
-/// what counts is that nothing is read or written out of bounds, and that what decodes is finite and in range.
+/// what counts is that nothing is read or written out of bounds, and that what decodes is finite and in
+/// range.
 inline gim_status exerciseDecoder(const std::uint8_t* bytes, std::size_t size, std::uint32_t maxGrid)
 {
     const gim_limits limits{sizeof(gim_limits), maxGrid, 4096, std::uint64_t{1} << 26};
@@ -28,7 +29,8 @@ inline gim_status exerciseDecoder(const std::uint8_t* bytes, std::size_t size, s
     gim_status status = gim_read_seam(bytes, size, &limits, work.data(), work.size(), &seam, nullptr, 0);
     if (status == GIM_OK) {
         std::vector<gim_side> sides(seam.sides);
-        status = gim_read_seam(bytes, size, &limits, work.data(), work.size(), &seam, sides.data(), seam.sides);
+        status =
+            gim_read_seam(bytes, size, &limits, work.data(), work.size(), &seam, sides.data(), seam.sides);
         if (status != GIM_OK) std::abort();
         std::uint64_t total = 0;
         for (const gim_side& side : sides) total += side.length;
@@ -45,10 +47,13 @@ inline gim_status exerciseDecoder(const std::uint8_t* bytes, std::size_t size, s
     for (std::uint32_t level = 0; level < info.levels; ++level) {
         for (const std::uint32_t flags : {0u, GIM_NO_FUSE}) {
             gim_mesh_counts counts{sizeof counts, 0, 0, 0};
-            if (gim_mesh_size(bytes, size, &limits, flags, level, work.data(), work.size(), &counts) != GIM_OK) std::abort();
-            std::vector<std::uint32_t> vertices(counts.vertices), triangles(3 * std::size_t{counts.triangles});
-            if (gim_build_mesh(bytes, size, &limits, flags, level, work.data(), work.size(), xyz.data(), nullptr,
-                               vertices.data(), triangles.data()) != GIM_OK)
+            if (gim_mesh_size(bytes, size, &limits, flags, level, work.data(), work.size(), &counts) !=
+                GIM_OK)
+                std::abort();
+            std::vector<std::uint32_t> vertices(counts.vertices),
+                triangles(3 * std::size_t{counts.triangles});
+            if (gim_build_mesh(bytes, size, &limits, flags, level, work.data(), work.size(), xyz.data(),
+                               nullptr, vertices.data(), triangles.data()) != GIM_OK)
                 std::abort();
             for (const std::uint32_t v : triangles)
                 if (v >= counts.vertices) std::abort();
@@ -58,7 +63,8 @@ inline gim_status exerciseDecoder(const std::uint8_t* bytes, std::size_t size, s
     }
     if (info.normal_grid != 0) {
         std::vector<float> normals(3 * std::size_t{info.normal_grid} * info.normal_grid);
-        const gim_status decoded = gim_decode_normals(bytes, size, &limits, 0, work.data(), work.size(), normals.data());
+        const gim_status decoded =
+            gim_decode_normals(bytes, size, &limits, 0, work.data(), work.size(), normals.data());
         if (decoded == GIM_MISUSE) std::abort();
     }
     return GIM_OK;

@@ -60,8 +60,10 @@ TEST(Mutations, AreDecodedOrRefusedButNeverHarmful)
             const std::uint32_t changes = 1 + dice.below(4);
             for (std::uint32_t k = 0; k < changes; ++k) {
                 // The fields that steer decoding are at the front; half of the changes go there.
-                const std::uint32_t range = dice.below(2) == 0 ? 60 : static_cast<std::uint32_t>(mutant.size());
-                mutant[dice.below(std::min<std::uint32_t>(range, static_cast<std::uint32_t>(mutant.size())))] =
+                const std::uint32_t range =
+                    dice.below(2) == 0 ? 60 : static_cast<std::uint32_t>(mutant.size());
+                mutant[dice.below(
+                    std::min<std::uint32_t>(range, static_cast<std::uint32_t>(mutant.size())))] =
                     static_cast<std::uint8_t>(dice.next());
             }
             if (dice.below(8) == 0) mutant.resize(dice.below(static_cast<std::uint32_t>(mutant.size())));
@@ -79,8 +81,10 @@ TEST(Mutations, AreDecodedOrRefusedButNeverHarmful)
 // Files in tests/malformed are named after the status they must give.
 TEST(Malformed, FilesAreRefusedForTheRightReason)
 {
-    const std::map<std::string, gim_status> expected = {
-        {"more-input", GIM_MORE_INPUT}, {"corrupt", GIM_CORRUPT}, {"unsupported", GIM_UNSUPPORTED}, {"limit", GIM_LIMIT}};
+    const std::map<std::string, gim_status> expected = {{"more-input", GIM_MORE_INPUT},
+                                                        {"corrupt", GIM_CORRUPT},
+                                                        {"unsupported", GIM_UNSUPPORTED},
+                                                        {"limit", GIM_LIMIT}};
     int files = 0;
     for (const auto& entry : std::filesystem::directory_iterator(GIMG_MALFORMED_DIR)) {
         if (entry.path().extension() != ".gim") continue;
@@ -88,7 +92,8 @@ TEST(Malformed, FilesAreRefusedForTheRightReason)
         std::ifstream in(entry.path(), std::ios::binary);
         const Bytes bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
         const std::string name = entry.path().filename().string();
-        const auto match = std::find_if(expected.begin(), expected.end(), [&](const auto& pair) { return name.rfind(pair.first, 0) == 0; });
+        const auto match = std::find_if(expected.begin(), expected.end(),
+                                        [&](const auto& pair) { return name.rfind(pair.first, 0) == 0; });
         ASSERT_NE(match, expected.end()) << name;
         EXPECT_EQ(exerciseDecoder(bytes.data(), bytes.size(), 1025), match->second) << name;
     }

@@ -34,7 +34,12 @@ inline Seam closedSeam(unsigned genus, std::uint32_t lowest, std::uint32_t start
 inline Seam torusSeam(std::uint32_t lowest)
 {
     const std::uint32_t side = lowest - 1;
-    return {lowest, 0, {{0, side, GIM_SIDE_FIRST}, {1, side, GIM_SIDE_FIRST}, {0, side, GIM_SIDE_MATE}, {1, side, GIM_SIDE_MATE}}};
+    return {lowest,
+            0,
+            {{0, side, GIM_SIDE_FIRST},
+             {1, side, GIM_SIDE_FIRST},
+             {0, side, GIM_SIDE_MATE},
+             {1, side, GIM_SIDE_MATE}}};
 }
 
 /// An open disk: the whole border is boundary.
@@ -48,7 +53,8 @@ inline std::vector<float> torusImage(std::uint32_t grid, double centre = 0)
     for (std::uint32_t j = 0; j < grid; ++j)
         for (std::uint32_t i = 0; i < grid; ++i) {
             const double u = angle(i), v = angle(j);
-            for (const double value : {(3 + std::cos(v)) * std::cos(u), (3 + std::cos(v)) * std::sin(u), std::sin(v)})
+            for (const double value :
+                 {(3 + std::cos(v)) * std::cos(u), (3 + std::cos(v)) * std::sin(u), std::sin(v)})
                 xyz.push_back(static_cast<float>(centre + value));
         }
     return xyz;
@@ -96,7 +102,8 @@ inline std::vector<float> bumpyImage(std::uint32_t grid, std::uint64_t seed)
             const double s = i / (grid - 1.0), t = j / (grid - 1.0);
             for (int c = 0; c < 3; ++c) {
                 const double* p = a + 3 * c;
-                const double smooth = p[0] * s + p[1] * t * (1 - t) + p[2] / (1 + 8 * (s - 0.4) * (s - 0.4) + 6 * (t - 0.6) * (t - 0.6));
+                const double smooth = p[0] * s + p[1] * t * (1 - t) +
+                                      p[2] / (1 + 8 * (s - 0.4) * (s - 0.4) + 6 * (t - 0.6) * (t - 0.6));
                 xyz.push_back(static_cast<float>(smooth + 0.002 * dice.unit()));
             }
         }
@@ -121,15 +128,15 @@ inline gim_info probed(const std::vector<std::uint8_t>& bytes)
     return info;
 }
 
-inline std::vector<float> decoded(const std::vector<std::uint8_t>& bytes, std::uint32_t flags = 0, bool normals = false)
+inline std::vector<float> decoded(const std::vector<std::uint8_t>& bytes, std::uint32_t flags = 0,
+                                  bool normals = false)
 {
     const gim_info info = probed(bytes);
     const std::uint32_t grid = normals ? info.normal_grid : info.grid;
     std::vector<unsigned char> workspace(gim_workspace_size(&info));
     std::vector<float> out(3 * std::size_t{grid} * grid);
-    const gim_status status =
-        (normals ? gim_decode_normals : gim_decode_geometry)(bytes.data(), bytes.size(), nullptr, flags,
-                                                             workspace.data(), workspace.size(), out.data());
+    const gim_status status = (normals ? gim_decode_normals : gim_decode_geometry)(
+        bytes.data(), bytes.size(), nullptr, flags, workspace.data(), workspace.size(), out.data());
     if (status != GIM_OK) throw std::runtime_error(gim_status_text(status));
     return out;
 }

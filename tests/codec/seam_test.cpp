@@ -75,7 +75,8 @@ Seam randomSeam(std::uint32_t lowest, std::uint64_t seed, std::uint32_t longest)
 TEST(SeamWord, RoundTripsOfEveryGenusTakeFewBytes)
 {
     const std::size_t most[8] = {2, 5, 6, 7, 8, 9, 9, 9};
-    for (unsigned genus = 0; genus < 8; ++genus) expectRoundTrip(closedSeam(genus, 65, 17 * genus), most[genus]);
+    for (unsigned genus = 0; genus < 8; ++genus)
+        expectRoundTrip(closedSeam(genus, 65, 17 * genus), most[genus]);
 }
 
 TEST(SeamWord, ADozenUnequalPathsTakeTensOfBytes)
@@ -161,9 +162,11 @@ TEST(BorderClasses, EulerNumberOfTheClassesIsThatOfTheWord)
         const std::vector<std::uint32_t> classes = borderClasses(seam, 33);
         const std::set<std::uint32_t> vertices(classes.begin(), classes.end());
         int edges = 0;
-        for (const gim_side& side : seam.sides) edges += side.kind == GIM_SIDE_MATE ? 0 : 2 * static_cast<int>(side.length);
+        for (const gim_side& side : seam.sides)
+            edges += side.kind == GIM_SIDE_MATE ? 0 : 2 * static_cast<int>(side.length);
         const int chi = static_cast<int>(vertices.size()) - edges + 1;
-        EXPECT_EQ(chi, 2 - 2 * static_cast<int>(topology.genus) - static_cast<int>(topology.boundaryLoops)) << seed;
+        EXPECT_EQ(chi, 2 - 2 * static_cast<int>(topology.genus) - static_cast<int>(topology.boundaryLoops))
+            << seed;
     }
 }
 
@@ -182,10 +185,11 @@ bool meshIsSimplicial(const Seam& seam, std::uint32_t grid)
     const gim_info info = samples::probed(bytes);
     std::vector<unsigned char> work(info.workspace);
     gim_mesh_counts counts{sizeof(gim_mesh_counts), 0, 0, 0};
-    EXPECT_EQ(gim_mesh_size(bytes.data(), bytes.size(), nullptr, 0, 0, work.data(), work.size(), &counts), GIM_OK);
+    EXPECT_EQ(gim_mesh_size(bytes.data(), bytes.size(), nullptr, 0, 0, work.data(), work.size(), &counts),
+              GIM_OK);
     std::vector<std::uint32_t> triangles(3 * std::size_t{counts.triangles});
-    EXPECT_EQ(gim_build_mesh(bytes.data(), bytes.size(), nullptr, 0, 0, work.data(), work.size(), xyz.data(), nullptr,
-                             nullptr, triangles.data()),
+    EXPECT_EQ(gim_build_mesh(bytes.data(), bytes.size(), nullptr, 0, 0, work.data(), work.size(), xyz.data(),
+                             nullptr, nullptr, triangles.data()),
               GIM_OK);
     std::map<std::pair<std::uint32_t, std::uint32_t>, int> edges;
     for (std::size_t k = 0; k < triangles.size(); ++k) {
@@ -194,13 +198,15 @@ bool meshIsSimplicial(const Seam& seam, std::uint32_t grid)
         ++edges[{std::min(a, b), std::max(a, b)}];
     }
     const SeamTopology topology = topologyOf(seam);
-    const auto chi = static_cast<int>(counts.vertices) - static_cast<int>(edges.size()) + static_cast<int>(counts.triangles);
+    const auto chi = static_cast<int>(counts.vertices) - static_cast<int>(edges.size()) +
+                     static_cast<int>(counts.triangles);
     return chi == 2 - 2 * static_cast<int>(topology.genus) - static_cast<int>(topology.boundaryLoops);
 }
 
 bool simplicial(const Seam& seam, std::uint32_t grid)
 {
-    return seamIsSimplicial(seam.sides.data(), static_cast<std::uint32_t>(seam.sides.size()), seam.start, seam.lowest, grid);
+    return seamIsSimplicial(seam.sides.data(), static_cast<std::uint32_t>(seam.sides.size()), seam.start,
+                            seam.lowest, grid);
 }
 
 TEST(SeamIsSimplicial, AgreesWithCountingTheMeshsEdges)

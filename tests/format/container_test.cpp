@@ -61,7 +61,7 @@ TEST(Container, FindsKnownChunksInAnyOrderAndSkipsAncillaryOnes)
 TEST(Container, RefusesWhatItMust)
 {
     EXPECT_EQ(statusOf(fileOf({{'S', {1}}, {'G', {1}}, {'X', {}}})), ReadStatus::Unsupported);
-    EXPECT_EQ(statusOf(fileOf({{'S', {1}}})), ReadStatus::Corrupt);               // no geometry
+    EXPECT_EQ(statusOf(fileOf({{'S', {1}}})), ReadStatus::Corrupt);                         // no geometry
     EXPECT_EQ(statusOf(fileOf({{'S', {1}}, {'G', {1}}, {'S', {1}}})), ReadStatus::Corrupt); // twice
     Bytes trailing = fileOf({{'S', {1}}, {'G', {1}}});
     trailing.push_back(0);
@@ -91,7 +91,9 @@ TEST(Container, EveryTruncationAsksForMoreAndEveryFlippedBitIsNoticed)
     const Bytes file = fileOf({{'S', {1, 2, 3}}, {'x', {}}, {'G', Bytes(200, 42)}});
     ASSERT_EQ(statusOf(file), ReadStatus::Ok);
     for (std::size_t size = 0; size < file.size(); ++size)
-        EXPECT_EQ(statusOf(Bytes(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size))), ReadStatus::MoreInput) << size;
+        EXPECT_EQ(statusOf(Bytes(file.begin(), file.begin() + static_cast<std::ptrdiff_t>(size))),
+                  ReadStatus::MoreInput)
+            << size;
     for (std::size_t k = 0; k < 8 * file.size(); ++k) {
         Bytes flipped = file;
         flipped[k / 8] = static_cast<std::uint8_t>(flipped[k / 8] ^ (1u << k % 8));

@@ -31,7 +31,8 @@ public:
         static_assert(sizeof(T) == 4);
         for (const T& word : words) {
             std::uint32_t bits;
-            std::copy_n(reinterpret_cast<const unsigned char*>(&word), 4, reinterpret_cast<unsigned char*>(&bits));
+            std::copy_n(reinterpret_cast<const unsigned char*>(&word), 4,
+                        reinterpret_cast<unsigned char*>(&bits));
             for (unsigned k = 0; k < 32; k += 8) value_ = (value_ ^ (bits >> k & 0xFFu)) * 1099511628211u;
         }
     }
@@ -55,21 +56,24 @@ std::string hashOf(const Bytes& bytes)
     std::vector<float> xyz(3 * std::size_t{info.grid} * info.grid);
     Hash hash;
     for (const std::uint32_t flags : {0u, GIM_NO_FUSE, GIM_NO_DIFFUSE}) {
-        if (gim_decode_geometry(bytes.data(), bytes.size(), nullptr, flags, work.data(), work.size(), xyz.data()) != GIM_OK)
+        if (gim_decode_geometry(bytes.data(), bytes.size(), nullptr, flags, work.data(), work.size(),
+                                xyz.data()) != GIM_OK)
             return "refused";
         hash.add(xyz);
     }
     if (info.normal_grid != 0) {
         std::vector<float> normals(3 * std::size_t{info.normal_grid} * info.normal_grid);
-        if (gim_decode_normals(bytes.data(), bytes.size(), nullptr, 0, work.data(), work.size(), normals.data()) != GIM_OK)
+        if (gim_decode_normals(bytes.data(), bytes.size(), nullptr, 0, work.data(), work.size(),
+                               normals.data()) != GIM_OK)
             return "refused";
         hash.add(normals);
     }
     gim_mesh_counts counts{sizeof counts, 0, 0, 0};
-    if (gim_mesh_size(bytes.data(), bytes.size(), nullptr, 0, 0, work.data(), work.size(), &counts) != GIM_OK) return "refused";
+    if (gim_mesh_size(bytes.data(), bytes.size(), nullptr, 0, 0, work.data(), work.size(), &counts) != GIM_OK)
+        return "refused";
     std::vector<std::uint32_t> triangles(3 * std::size_t{counts.triangles});
-    if (gim_build_mesh(bytes.data(), bytes.size(), nullptr, 0, 0, work.data(), work.size(), xyz.data(), nullptr, nullptr,
-                       triangles.data()) != GIM_OK)
+    if (gim_build_mesh(bytes.data(), bytes.size(), nullptr, 0, 0, work.data(), work.size(), xyz.data(),
+                       nullptr, nullptr, triangles.data()) != GIM_OK)
         return "refused";
     hash.add(triangles);
     return hash.text();

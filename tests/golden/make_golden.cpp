@@ -31,7 +31,8 @@ int main(int argc, char** argv)
 {
     if (argc != 2) return std::cerr << "usage: make_golden FOLDER\n", 2;
     const std::string folder = argv[1];
-    const std::vector<float> bumpy = samples::bumpyImage(65, 1), small = samples::bumpyImage(3, 2), torus = samples::torusImage(33);
+    const std::vector<float> bumpy = samples::bumpyImage(65, 1), small = samples::bumpyImage(3, 2),
+                             torus = samples::torusImage(33);
     const std::vector<float> normals = samples::torusNormals(65);
 
     const Source genus3 = sourceOf(bumpy, 65, samples::closedSeam(3, 33, 50));
@@ -40,15 +41,18 @@ int main(int argc, char** argv)
     write(folder, "v1-wavelet-fine-step", samples::encoded(genus3, {GIM_CODING_WAVELET, 2e-6f, 0}));
     write(folder, "v1-raw12-genus3", samples::encoded(genus3, {GIM_CODING_RAW12, 0, 0}));
     write(folder, "v1-float-genus3", samples::encoded(genus3, {GIM_CODING_FLOAT, 0, 0}));
-    write(folder, "v1-wavelet-3x3-disk", samples::encoded(sourceOf(small, 3, samples::diskSeam(3)), {GIM_CODING_WAVELET, 0.01f, 0}));
+    write(folder, "v1-wavelet-3x3-disk",
+          samples::encoded(sourceOf(small, 3, samples::diskSeam(3)), {GIM_CODING_WAVELET, 0.01f, 0}));
 
     Source withNormals = sourceOf(torus, 33, samples::torusSeam(9));
     withNormals.normalGrid = 65;
     withNormals.normals = normals;
-    write(folder, "v1-wavelet-torus-normals", samples::encoded(withNormals, {GIM_CODING_WAVELET, 0.01f, 0.05f}));
+    write(folder, "v1-wavelet-torus-normals",
+          samples::encoded(withNormals, {GIM_CODING_WAVELET, 0.01f, 0.05f}));
     write(folder, "v1-raw12-torus-normals", samples::encoded(withNormals, {GIM_CODING_RAW12, 0, 0}));
 
-    Source boundary = sourceOf(bumpy, 65, {17, 5, {{0, 12, 1}, {1, 10, 0}, {2, 8, 1}, {0, 12, 2}, {2, 8, 2}, {3, 14, 0}}});
+    Source boundary =
+        sourceOf(bumpy, 65, {17, 5, {{0, 12, 1}, {1, 10, 0}, {2, 8, 1}, {0, 12, 2}, {2, 8, 2}, {3, 14, 0}}});
     write(folder, "v1-wavelet-boundary", samples::encoded(boundary, {GIM_CODING_WAVELET, 0.02f, 0}));
     return 0;
 }
