@@ -137,7 +137,8 @@ void relaxLevel(const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSi
 }
 
 // The coarsest level is a wheel: any convex combination of the border embeds it.
-Status startCoarsest(const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides, std::vector<Vec2>& st)
+Status startCoarsest(const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides,
+                     std::vector<Vec2>& st)
 {
     std::vector<int> vertexOf;
     const Mesh level = hierarchy.current(vertexOf);
@@ -176,8 +177,8 @@ Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progres
             const int v = hierarchy.refine();
             const Star star(disk, hierarchy.star(v), result.st);
             if (!star.place(result.st[v]))
-                return Error{ErrorKind::FlippedTriangle,
-                             "no room left in the plane for surface vertex " + std::to_string(square.disk.origin[v])};
+                return Error{ErrorKind::FlippedTriangle, "no room left in the plane for surface vertex " +
+                                                             std::to_string(square.disk.origin[v])};
             star.descend(result.st[v]);
         }
         sweepVertices(disk, hierarchy, square.squareSides, result.st);
