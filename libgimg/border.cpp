@@ -12,7 +12,7 @@ namespace gimg {
 namespace {
 
 constexpr int kDefaultLowest = 33;
-constexpr int kLargestGrid = 4097;
+constexpr int kLargestGrid = BorderOptions::kLargestGrid;
 
 bool isGridSize(int n) { return n >= 3 && n <= kLargestGrid && ((n - 1) & (n - 2)) == 0; }
 

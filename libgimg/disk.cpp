@@ -1,6 +1,8 @@
 #include "gimg/disk.h"
 
+#include <algorithm>
 #include <unordered_map>
+#include <utility>
 
 namespace gimg {
 namespace {
@@ -86,6 +88,12 @@ Result<DiskMesh> openAlong(const Mesh& mesh, const CutGraph& cut)
     }
     const int euler =
         static_cast<int>(disk.origin.size()) - (he.count() + borderEdges) / 2 + mesh.faceCount();
+    // Begin with path 0, whatever the numbering of the faces: layouts refer to the order of the sides.
+    const auto first =
+        std::min_element(disk.sides.begin(), disk.sides.end(), [](const DiskSide& a, const DiskSide& b) {
+            return std::pair(a.path, a.reversed) < std::pair(b.path, b.reversed);
+        });
+    std::rotate(disk.sides.begin(), first, disk.sides.end());
     if (walked != borderEdges || euler != 1)
         return Error{ErrorKind::NotADisk, "the cut leaves Euler characteristic " + std::to_string(euler) +
                                               " and more than " + std::to_string(walked) + " border edges"};

@@ -67,8 +67,8 @@ Result<double> decodedPsnr(const std::vector<uint8_t>& file, const SurfaceMeasur
 // Normals are judged by eye, not by distance: their step is the same at any quality of the surface.
 constexpr float kNormalStep = 1.0f / 32;
 
-// Searches the coarsest step that reaches the target: bisection on its logarithm, since the quality falls by
-// about 6 dB when the step doubles.
+// Searches the coarsest step that reaches the target: the quality falls by about 5 dB when the step doubles,
+// which tells where to try next; bisection wherever that leaves the bracket.
 class PsnrSearch
 {
 public:
@@ -79,33 +79,37 @@ public:
 
     Result<std::vector<uint8_t>> run()
     {
-        constexpr double kFinest = 0x1p-22, kWindow = 0.5, kGoodEnough = 0.1;
+        constexpr double kFinest = 0x1p-20, kCoarsest = 0x1p8; // of the diagonal
+        constexpr double kWindow = 0.5, kAim = 0.1;            // dB above the target
         constexpr int kMostSteps = 24;
-        double fine = std::log(kFinest), coarse = std::log(0.25);
-        const Result<Trial> best = attempt(fine);
-        if (!best) return best.error();
-        if (best->psnr < options_.psnr)
+        double fine = std::log(kFinest), coarse = std::log(kCoarsest);
+        Result<Trial> kept = attempt(fine);
+        if (!kept) return kept.error();
+        if (kept->psnr < options_.psnr)
             return Error{ErrorKind::TargetUnreachable,
                          decibels(options_.psnr) + " cannot be reached: this grid holds the surface to " +
-                             decibels(best->psnr) + "; use a larger --grid"};
-        Trial kept = *best;
-        for (int i = 0; i < kMostSteps && kept.psnr > options_.psnr + kGoodEnough; ++i) {
-            const double middle = i == 0 ? firstGuess() : 0.5 * (fine + coarse);
-            Result<Trial> trial = attempt(middle);
+                             decibels(kept->psnr) + "; use a larger --grid"};
+        double next = -options_.psnr / 20 * std::log(10.0);
+        for (int i = 0; i < kMostSteps && kept->psnr > options_.psnr + 2 * kAim && coarse - fine > 1e-6;
+             ++i) {
+            if (!(next > fine && next < coarse)) next = 0.5 * (fine + coarse);
+            Result<Trial> trial = attempt(next);
             if (!trial) return trial.error();
             if (options_.progress) options_.progress("code", (i + 1.0) / kMostSteps);
-            if (trial->psnr >= options_.psnr) {
-                fine = middle;
+            const double excess = trial->psnr - options_.psnr;
+            if (excess >= 0) {
+                fine = next;
                 kept = std::move(*trial);
             } else {
-                coarse = middle;
+                coarse = next;
             }
+            next += (excess - kAim) / 5 * std::log(2.0);
         }
-        if (kept.psnr > options_.psnr + kWindow)
+        if (kept->psnr > options_.psnr + kWindow)
             return Error{ErrorKind::TargetUnreachable, "no file is within 0.5 dB of " +
                                                            decibels(options_.psnr) +
-                                                           "; the nearest above has " + decibels(kept.psnr)};
-        return std::move(kept.file);
+                                                           "; the nearest above has " + decibels(kept->psnr)};
+        return std::move(kept->file);
     }
 
 private:
@@ -114,9 +118,6 @@ private:
         std::vector<uint8_t> file;
         double psnr;
     };
-
-    // With a uniform quantiser the error is near a third of the step.
-    double firstGuess() const { return std::log(3.0) - options_.psnr / 20 * std::log(10.0); }
 
     Result<Trial> attempt(double logStep)
     {

@@ -1,5 +1,7 @@
 #include "gimg/sample.h"
 
+#include "stretch_element.h"
+
 #include <algorithm>
 #include <cmath>
 #include <optional>
@@ -7,42 +9,54 @@
 namespace gimg {
 namespace {
 
+constexpr double kHair = 1e-6; // grid steps
+
 struct Image
 {
     int n;
     std::vector<Vec3> value;
-    std::vector<double> inside; // smallest barycentric coordinate of the triangle that gave the value
+    std::vector<double> inside; // how far inside the triangle that gave the value, in grid steps
 
     explicit Image(int size)
-        : n(size), value(static_cast<size_t>(size) * size, Vec3::Zero()), inside(value.size(), -1e-6)
+        : n(size), value(static_cast<size_t>(size) * size, Vec3::Zero()), inside(value.size(), -kHair)
     {
     }
     size_t index(int i, int j) const { return static_cast<size_t>(j) * n + i; }
 };
 
+// How far p lies to the left of the line from a to b; 0 if they coincide.
+double leftOf(const Vec2& a, const Vec2& b, const Vec2& p)
+{
+    const Vec2 along = b - a, to = p - a;
+    const double length = along.norm();
+    return length > 0 ? (along.x() * to.y() - along.y() * to.x()) / length : 0;
+}
+
 // Interpolates over every grid point in or on the triangle. Where triangles meet, rounding may put a point
-// outside both, by a hair: the one that holds it best wins.
+// outside both, by a hair: the one that holds it best wins. Distances decide, since barycentric coordinates
+// amplify rounding in slivers.
 void rasterize(const std::array<Vec2, 3>& corner, const std::array<Vec3, 3>& value, Image& image)
 {
     const auto [loX, hiX] = std::minmax({corner[0].x(), corner[1].x(), corner[2].x()});
     const auto [loY, hiY] = std::minmax({corner[0].y(), corner[1].y(), corner[2].y()});
-    constexpr double kHair = 1e-7;
     const int i0 = std::max(0, static_cast<int>(std::ceil(loX - kHair)));
     const int i1 = std::min(image.n - 1, static_cast<int>(std::floor(hiX + kHair)));
     const int j0 = std::max(0, static_cast<int>(std::ceil(loY - kHair)));
     const int j1 = std::min(image.n - 1, static_cast<int>(std::floor(hiY + kHair)));
-    const Vec2 a = corner[1] - corner[0], b = corner[2] - corner[0];
-    const double doubled = a.x() * b.y() - a.y() * b.x();
     for (int j = j0; j <= j1; ++j)
         for (int i = i0; i <= i1; ++i) {
-            const Vec2 p = Vec2(i, j) - corner[0];
-            const double u = (p.x() * b.y() - p.y() * b.x()) / doubled;
-            const double v = (a.x() * p.y() - a.y() * p.x()) / doubled;
-            const double smallest = std::min({u, v, 1 - u - v});
+            const Vec2 p(i, j);
+            const double inside = std::min({leftOf(corner[0], corner[1], p), leftOf(corner[1], corner[2], p),
+                                            leftOf(corner[2], corner[0], p)});
             const size_t at = image.index(i, j);
-            if (!(smallest > image.inside[at])) continue;
-            image.inside[at] = smallest;
-            image.value[at] = (1 - u - v) * value[0] + u * value[1] + v * value[2];
+            if (!(inside > image.inside[at])) continue;
+            image.inside[at] = inside;
+            double weight[3], sum = 0;
+            for (int k = 0; k < 3; ++k) {
+                weight[k] = std::max(0.0, doubleArea({p, corner[(k + 1) % 3], corner[(k + 2) % 3]}));
+                sum += weight[k];
+            }
+            image.value[at] = (weight[0] * value[0] + weight[1] * value[1] + weight[2] * value[2]) / sum;
         }
 }
 
@@ -99,11 +113,13 @@ void sampleBorder(const SquareDisk& square, const std::vector<Vec3>& surfaceValu
 Result<Image> sampleValues(const SquareDisk& square, const Parameterization& parameterization,
                            const std::vector<Vec3>& surfaceValue, int n)
 {
-    if (n < square.lowest || (n - 1) % (square.lowest - 1) != 0 || ((n - 1) & (n - 2)) != 0)
+    if (n < square.lowest || n > BorderOptions::kLargestGrid || (n - 1) % (square.lowest - 1) != 0 ||
+        ((n - 1) & (n - 2)) != 0)
         return Error{ErrorKind::BadArgument, "cannot sample " + std::to_string(n) + " x " +
                                                  std::to_string(n) +
-                                                 ": the size must be 2^j + 1 and at least the lowest level " +
-                                                 std::to_string(square.lowest)};
+                                                 ": the size must be 2^j + 1, at least the lowest level " +
+                                                 std::to_string(square.lowest) + " and at most " +
+                                                 std::to_string(BorderOptions::kLargestGrid)};
     Image image(n);
     const DiskMesh& disk = square.disk;
     for (const Triangle& f : disk.mesh.faces) {
@@ -117,7 +133,7 @@ Result<Image> sampleValues(const SquareDisk& square, const Parameterization& par
     }
     sampleBorder(square, surfaceValue, image);
     for (size_t at = 0; at < image.value.size(); ++at)
-        if (image.inside[at] <= -1e-6)
+        if (image.inside[at] <= -kHair)
             return Error{ErrorKind::FlippedTriangle, "grid point " + std::to_string(at % n) + ", " +
                                                          std::to_string(at / n) + " lies in no triangle"};
     return image;

@@ -7,7 +7,6 @@
 #include <cstdio>
 #include <fstream>
 #include <iostream>
-#include <iterator>
 #include <optional>
 #include <string>
 #include <utility>
@@ -52,9 +51,11 @@ inline std::optional<int> parse(CLI::App& app, int argc, char** argv)
 inline std::optional<std::vector<std::uint8_t>> readFile(const std::string& path)
 {
     std::ifstream in(path, std::ios::binary);
-    if (!in) return std::nullopt;
-    std::vector<std::uint8_t> bytes{std::istreambuf_iterator<char>(in), std::istreambuf_iterator<char>()};
-    if (in.bad()) return std::nullopt;
+    std::vector<std::uint8_t> bytes;
+    char block[1 << 16];
+    while (in.read(block, sizeof block) || in.gcount() > 0)
+        bytes.insert(bytes.end(), block, block + in.gcount());
+    if (!in.eof()) return std::nullopt; // not there, or a folder, or a failing disk
     return bytes;
 }
 

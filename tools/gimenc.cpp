@@ -29,6 +29,13 @@ struct Arguments
 
 std::optional<int> parseArguments(int argc, char** argv, Arguments& a)
 {
+    const CLI::Validator positive(
+        [](const std::string& text) {
+            double number = 0;
+            const bool good = CLI::detail::lexical_cast(text, number) && number > 0 && std::isfinite(number);
+            return good ? std::string() : text + " is not a positive number";
+        },
+        "");
     CLI::App app{"Encodes a triangle mesh (OBJ, PLY, OFF, STL) as a .gim geometry image file.", "gimenc"};
     app.footer("Exit codes: 0 done, 1 input refused, 2 usage, 3 target not reachable.");
     app.set_version_flag("--version", GIMG_VERSION);
@@ -38,10 +45,8 @@ std::optional<int> parseArguments(int argc, char** argv, Arguments& a)
     app.add_option("--lowest", a.lowest,
                    "samples a side of the lowest level of detail, 2^l + 1 (default: 33, or as needed)");
     auto* target = app.add_option_group("target", "what the file is made for; exactly one");
-    target->add_option("--bytes", a.bytes, "size of the whole file, never exceeded")
-        ->check(CLI::PositiveNumber);
-    target->add_option("--psnr", a.psnr, "surface PSNR in dB, met within 0.5 dB above")
-        ->check(CLI::PositiveNumber);
+    target->add_option("--bytes", a.bytes, "size of the whole file, never exceeded")->check(positive);
+    target->add_option("--psnr", a.psnr, "surface PSNR in dB, met within 0.5 dB above")->check(positive);
     target->add_option("--raw", a.raw, "no compression loss but 12-bit integers, or none at all with float")
         ->check(CLI::IsMember({"12", "float"}));
     target->require_option(1);
@@ -55,7 +60,7 @@ std::optional<int> parseArguments(int argc, char** argv, Arguments& a)
         ->transform(CLI::Transformer(welds));
     app.add_option("--threads", a.threads,
                    "threads to use (default: one a core); the file does not depend on it")
-        ->check(CLI::NonNegativeNumber);
+        ->check(positive);
     app.add_option("--json", a.json, "write a report to this file, or - for standard output");
     app.add_flag("--quiet", a.quiet, "print nothing but errors");
     return cli::parse(app, argc, argv);

@@ -6,6 +6,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <set>
 
 namespace gimg {
@@ -108,6 +109,25 @@ TEST(Cut, TorusCutIsNearlyAsShortAsTheShortestLoops)
     const Mesh mesh = shapes::torus(3, 1, 96, 48);
     const CutGraph cut = cutToDisk(mesh);
     EXPECT_LT(cutLength(mesh, cut), 1.15 * (2 * M_PI + 4 * M_PI));
+}
+
+TEST(Disk, SidesDoNotDependOnTheOrderOfFaces)
+{
+    Mesh mesh = shapes::surfaceOfGenus(2, 2, 5);
+    const CutGraph cut = cutToDisk(mesh);
+    const auto word = [&] {
+        const Result<DiskMesh> disk = openAlong(mesh, cut);
+        EXPECT_TRUE(disk.ok());
+        std::vector<std::pair<int, bool>> sides;
+        for (const DiskSide& side : disk->sides) sides.emplace_back(side.path, side.reversed);
+        return sides;
+    };
+    const auto before = word();
+    EXPECT_EQ(before[0].first, 0);
+    std::rotate(mesh.faces.begin(), mesh.faces.begin() + mesh.faceCount() / 3, mesh.faces.end());
+    EXPECT_EQ(word(), before);
+    std::reverse(mesh.faces.begin(), mesh.faces.end());
+    EXPECT_EQ(word(), before);
 }
 
 TEST(Disk, RefusesACutThatDoesNotOpenTheSurface)

@@ -15,6 +15,7 @@ namespace gimg {
 struct BorderOptions
 {
     static constexpr int kDefaultGrid = 257;
+    static constexpr int kLargestGrid = 4097;
 
     int grid = 0; ///< samples a side, 2^j + 1; 0: 257, or the next larger grid that can hold the cut
     int lowest =

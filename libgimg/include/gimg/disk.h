@@ -16,12 +16,13 @@ struct DiskSide
     std::vector<int> vertices; ///< disk vertices along the side, both ends included
 };
 
-/// A surface opened along a cut: one boundary loop, Euler characteristic 1.
+/// A surface opened along a cut: one boundary loop, Euler characteristic 1. Faces are those of the surface,
+/// in the same order.
 struct DiskMesh
 {
     Mesh mesh;
     std::vector<int> origin;     ///< surface vertex of every disk vertex
-    std::vector<DiskSide> sides; ///< counter-clockwise around the disk; faces correspond one to one
+    std::vector<DiskSide> sides; ///< counter-clockwise around the disk, beginning with path 0
 
     int borderLength() const; ///< number of boundary edges (= boundary vertices)
 };
