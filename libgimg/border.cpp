@@ -139,7 +139,8 @@ std::vector<int> rotationsBestFirst(const std::vector<int>& tips, int lowest)
         }
         if (tips.empty() || clearance > 0) scored.push_back({-clearance, start});
     }
-    std::stable_sort(scored.begin(), scored.end(), [](const auto& a, const auto& b) { return a.first < b.first; });
+    std::stable_sort(scored.begin(), scored.end(),
+                     [](const auto& a, const auto& b) { return a.first < b.first; });
     std::vector<int> starts;
     for (const auto& entry : scored) starts.push_back(entry.second);
     return starts;
@@ -159,17 +160,18 @@ std::optional<Layout> layoutAt(int lowest, const CutGraph& cut, const DiskMesh& 
     if (!length) return std::nullopt;
     const std::vector<gim_side> word = seamWord(disk.sides, cut, *length);
     for (int start : rotationsBestFirst(tipPositions(disk, cut, *length), lowest))
-        if (codec::seamIsSimplicial(word.data(), static_cast<uint32_t>(word.size()), static_cast<uint32_t>(start),
-                                    static_cast<uint32_t>(lowest), static_cast<uint32_t>(lowest)))
+        if (codec::seamIsSimplicial(word.data(), static_cast<uint32_t>(word.size()),
+                                    static_cast<uint32_t>(start), static_cast<uint32_t>(lowest),
+                                    static_cast<uint32_t>(lowest)))
             return Layout{lowest, start, *length};
     return std::nullopt;
 }
 
 Error doesNotFit(const CutGraph& cut, const char* what, int size)
 {
-    return {ErrorKind::TargetUnreachable,
-            "the cut has " + std::to_string(cut.paths.size()) + " paths, too many for " + what + " " +
-                std::to_string(size) + "; use a larger one"};
+    return {ErrorKind::TargetUnreachable, "the cut has " + std::to_string(cut.paths.size()) +
+                                              " paths, too many for " + what + " " + std::to_string(size) +
+                                              "; use a larger one"};
 }
 
 // The asked lowest level, or the smallest from the default on; preferably one whose border is at least twice
@@ -293,10 +295,14 @@ Vec2 onSquare(double position, int side)
     const int edge = std::min(3, static_cast<int>(position / side));
     const double x = position / side - edge;
     switch (edge) {
-    case 0: return {x, 0};
-    case 1: return {1, x};
-    case 2: return {1 - x, 1};
-    default: return {0, 1 - x};
+    case 0:
+        return {x, 0};
+    case 1:
+        return {1, x};
+    case 2:
+        return {1 - x, 1};
+    default:
+        return {0, 1 - x};
     }
 }
 
@@ -304,7 +310,8 @@ uint8_t sidesOf(double position, int side)
 {
     uint8_t mask = 0;
     for (int edge = 0; edge < 4; ++edge)
-        if (position >= edge * side && position <= (edge + 1) * side) mask = static_cast<uint8_t>(mask | 1 << edge);
+        if (position >= edge * side && position <= (edge + 1) * side)
+            mask = static_cast<uint8_t>(mask | 1 << edge);
     if (position == 0) mask |= 8;
     return mask;
 }
@@ -341,7 +348,8 @@ Result<SquareDisk> layOutBorder(const Mesh& mesh, const CutGraph& cut, const Bor
 {
     if (options.grid != 0 && !isGridSize(options.grid))
         return Error{ErrorKind::BadArgument, "grid " + std::to_string(options.grid) +
-                                                 " is not 2^j + 1 between 3 and " + std::to_string(kLargestGrid)};
+                                                 " is not 2^j + 1 between 3 and " +
+                                                 std::to_string(kLargestGrid)};
     if (options.lowest != 0 && !isGridSize(options.lowest))
         return Error{ErrorKind::BadArgument,
                      "lowest level " + std::to_string(options.lowest) + " is not 2^j + 1"};

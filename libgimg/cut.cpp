@@ -37,7 +37,10 @@ public:
     }
 
 private:
-    double edgeLength(int h) const { return (mesh_.positions[he_.head(h)] - mesh_.positions[he_.tail(h)]).norm(); }
+    double edgeLength(int h) const
+    {
+        return (mesh_.positions[he_.head(h)] - mesh_.positions[he_.tail(h)]).norm();
+    }
     Vec3 centroid(int f) const
     {
         const Triangle& t = mesh_.faces[f];
@@ -217,8 +220,7 @@ private:
         for (int h = he_.rotateCcw(first); h >= 0 && h != first && !inCut_[h]; h = he_.rotateCcw(h))
             out.push_back(h);
         if (out.size() > 1 && he_.rotateCcw(out.back()) == first) return out; // the whole ring of v
-        for (int h = he_.rotateCw(first); h >= 0 && !inCut_[h]; h = he_.rotateCw(h))
-            out.push_back(h);
+        for (int h = he_.rotateCw(first); h >= 0 && !inCut_[h]; h = he_.rotateCw(h)) out.push_back(h);
         return out;
     }
 

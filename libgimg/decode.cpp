@@ -10,10 +10,14 @@ Error decoderError(gim_status status)
 {
     const std::string text = gim_status_text(status);
     switch (status) {
-    case GIM_MORE_INPUT: return {ErrorKind::FileTruncated, text};
-    case GIM_CORRUPT: return {ErrorKind::FileCorrupt, text};
-    case GIM_MISUSE: return {ErrorKind::BadArgument, text};
-    default: return {ErrorKind::CodecFailure, text};
+    case GIM_MORE_INPUT:
+        return {ErrorKind::FileTruncated, text};
+    case GIM_CORRUPT:
+        return {ErrorKind::FileCorrupt, text};
+    case GIM_MISUSE:
+        return {ErrorKind::BadArgument, text};
+    default:
+        return {ErrorKind::CodecFailure, text};
     }
 }
 
@@ -37,18 +41,20 @@ Result<DecodedImages> decodeImages(std::span<const uint8_t> file, unsigned flags
     if (status != GIM_OK) return decoderError(status);
     if (out.info.normal_grid > 0) {
         out.normals = emptyImage(out.info.normal_grid);
-        status = gim_decode_normals(file.data(), file.size(), nullptr, flags, workspace.data(), workspace.size(),
-                                    out.normals.samples.data());
+        status = gim_decode_normals(file.data(), file.size(), nullptr, flags, workspace.data(),
+                                    workspace.size(), out.normals.samples.data());
         if (status != GIM_OK) return decoderError(status);
     }
     return out;
 }
 
-Result<Mesh> levelMesh(std::span<const uint8_t> file, const DecodedImages& images, unsigned level, unsigned flags)
+Result<Mesh> levelMesh(std::span<const uint8_t> file, const DecodedImages& images, unsigned level,
+                       unsigned flags)
 {
     if (level >= images.info.levels)
-        return Error{ErrorKind::BadArgument, "level " + std::to_string(level) + " does not exist: the file has " +
-                                                 std::to_string(images.info.levels) + " levels, 0 the finest"};
+        return Error{ErrorKind::BadArgument,
+                     "level " + std::to_string(level) + " does not exist: the file has " +
+                         std::to_string(images.info.levels) + " levels, 0 the finest"};
     std::vector<std::byte> workspace(gim_workspace_size(&images.info));
     gim_mesh_counts counts{};
     counts.size = sizeof counts;
@@ -57,8 +63,8 @@ Result<Mesh> levelMesh(std::span<const uint8_t> file, const DecodedImages& image
     if (status != GIM_OK) return decoderError(status);
     std::vector<uint32_t> sampleOfVertex(counts.vertices), triangles(size_t{3} * counts.triangles);
     const float* xyz = images.geometry.samples.data();
-    status = gim_build_mesh(file.data(), file.size(), nullptr, flags, level, workspace.data(), workspace.size(),
-                            xyz, nullptr, sampleOfVertex.data(), triangles.data());
+    status = gim_build_mesh(file.data(), file.size(), nullptr, flags, level, workspace.data(),
+                            workspace.size(), xyz, nullptr, sampleOfVertex.data(), triangles.data());
     if (status != GIM_OK) return decoderError(status);
 
     Mesh mesh;

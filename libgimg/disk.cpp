@@ -39,7 +39,8 @@ Result<DiskMesh> openAlong(const Mesh& mesh, const CutGraph& cut)
     for (int h = 0; h < he.count(); ++h) {
         cutEdge[h] = pathEdges.count(directedEdge(he.tail(h), he.head(h))) > 0;
         borderEdges += cutEdge[h];
-        if (he.onBoundary(h) && !cutEdge[h]) return Error{ErrorKind::NotADisk, "the cut misses a boundary edge"};
+        if (he.onBoundary(h) && !cutEdge[h])
+            return Error{ErrorKind::NotADisk, "the cut misses a boundary edge"};
     }
     if (borderEdges == 0) return Error{ErrorKind::NotADisk, "the cut is empty"};
 
@@ -83,7 +84,8 @@ Result<DiskMesh> openAlong(const Mesh& mesh, const CutGraph& cut)
         while (!cutEdge[h]) h = Halfedges::next(he.twin(h));
         if (h == start) break;
     }
-    const int euler = static_cast<int>(disk.origin.size()) - (he.count() + borderEdges) / 2 + mesh.faceCount();
+    const int euler =
+        static_cast<int>(disk.origin.size()) - (he.count() + borderEdges) / 2 + mesh.faceCount();
     if (walked != borderEdges || euler != 1)
         return Error{ErrorKind::NotADisk, "the cut leaves Euler characteristic " + std::to_string(euler) +
                                               " and more than " + std::to_string(walked) + " border edges"};

@@ -102,7 +102,8 @@ public:
             }
         }
         if (kept.psnr > options_.psnr + kWindow)
-            return Error{ErrorKind::TargetUnreachable, "no file is within 0.5 dB of " + decibels(options_.psnr) +
+            return Error{ErrorKind::TargetUnreachable, "no file is within 0.5 dB of " +
+                                                           decibels(options_.psnr) +
                                                            "; the nearest above has " + decibels(kept.psnr)};
         return std::move(kept.file);
     }
@@ -139,10 +140,16 @@ Result<std::vector<uint8_t>> code(const codec::Encoder& encoder, const SurfaceMe
 {
     codec::Settings settings;
     switch (options.target) {
-    case EncodeTarget::Bytes: return fileOf(encoder.encodeToBytes(options.bytes));
-    case EncodeTarget::Psnr: return PsnrSearch(encoder, measure, options).run();
-    case EncodeTarget::Raw12: settings.coding = GIM_CODING_RAW12; break;
-    case EncodeTarget::RawFloat: settings.coding = GIM_CODING_FLOAT; break;
+    case EncodeTarget::Bytes:
+        return fileOf(encoder.encodeToBytes(options.bytes));
+    case EncodeTarget::Psnr:
+        return PsnrSearch(encoder, measure, options).run();
+    case EncodeTarget::Raw12:
+        settings.coding = GIM_CODING_RAW12;
+        break;
+    case EncodeTarget::RawFloat:
+        settings.coding = GIM_CODING_FLOAT;
+        break;
     }
     return fileOf(encoder.encode(settings));
 }
@@ -196,7 +203,8 @@ Result<EncodedMesh> encodeMesh(const Mesh& mesh, const EncodeOptions& options)
     stage("code", 0);
     codec::Source source;
     source.grid = static_cast<uint32_t>(square->grid);
-    source.seam = {static_cast<uint32_t>(square->lowest), static_cast<uint32_t>(square->start), square->seam()};
+    source.seam = {static_cast<uint32_t>(square->lowest), static_cast<uint32_t>(square->start),
+                   square->seam()};
     source.xyz = geometry->samples;
     source.normalGrid = static_cast<uint32_t>(options.normals);
     source.normals = normals->samples;

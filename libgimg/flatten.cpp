@@ -107,17 +107,45 @@ private:
     std::vector<std::pair<Vec2, Vec2>> edges_; // outer edge of each triangle
 };
 
-// Moves every vertex of the current mesh by itself. Newton's global step is no longer than the worst sliver
-// allows; this frees the slivers first.
+// Moves vertices of the current mesh one by one: all of them twice, then those at slivers until none is left.
+// Newton's global step is no longer than the worst sliver allows; this frees the slivers first.
 void sweepVertices(const Mesh& disk, const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides,
                    std::vector<Vec2>& st)
 {
-    constexpr int kSweeps = 2;
+    constexpr int kSweeps = 2, kSliverSweeps = 100;
+    constexpr double kSliver = 1000; // times the mean energy for its area
     std::vector<int> vertexOf;
-    hierarchy.current(vertexOf);
+    const Mesh level = hierarchy.current(vertexOf);
+    const auto descend = [&](int v) {
+        if (squareSides[v] == 0) Star(disk, hierarchy.star(v), st).descend(st[v]);
+    };
     for (int sweep = 0; sweep < kSweeps; ++sweep)
-        for (int v : vertexOf)
-            if (squareSides[v] == 0) Star(disk, hierarchy.star(v), st).descend(st[v]);
+        for (int v : vertexOf) descend(v);
+
+    std::vector<StretchElement> elements;
+    for (const Triangle& f : level.faces)
+        elements.emplace_back(level.positions[f[0]], level.positions[f[1]], level.positions[f[2]]);
+    for (int sweep = 0; sweep < kSliverSweeps; ++sweep) {
+        std::vector<double> energy;
+        double sum = 0, area = 0;
+        for (size_t f = 0; f < elements.size(); ++f) {
+            const Triangle& t = level.faces[f];
+            energy.push_back(
+                elements[f].energy({st[vertexOf[t[0]]], st[vertexOf[t[1]]], st[vertexOf[t[2]]]}));
+            sum += energy.back();
+            area += elements[f].area();
+        }
+        std::vector<bool> atSliver(vertexOf.size(), false);
+        bool any = false;
+        for (size_t f = 0; f < elements.size(); ++f) {
+            if (energy[f] <= kSliver * sum / area * elements[f].area()) continue;
+            any = true;
+            for (int k : level.faces[f]) atSliver[k] = true;
+        }
+        if (!any) return;
+        for (size_t i = 0; i < vertexOf.size(); ++i)
+            if (atSliver[i]) descend(vertexOf[i]);
+    }
 }
 
 // Lowers the stretch of the hierarchy's current mesh; positions stay indexed by the disk's vertices.
@@ -137,7 +165,8 @@ void relaxLevel(const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSi
 }
 
 // The coarsest level is a wheel: any convex combination of the border embeds it.
-Status startCoarsest(const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides, std::vector<Vec2>& st)
+Status startCoarsest(const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides,
+                     std::vector<Vec2>& st)
 {
     std::vector<int> vertexOf;
     const Mesh level = hierarchy.current(vertexOf);
@@ -176,8 +205,8 @@ Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progres
             const int v = hierarchy.refine();
             const Star star(disk, hierarchy.star(v), result.st);
             if (!star.place(result.st[v]))
-                return Error{ErrorKind::FlippedTriangle,
-                             "no room left in the plane for surface vertex " + std::to_string(square.disk.origin[v])};
+                return Error{ErrorKind::FlippedTriangle, "no room left in the plane for surface vertex " +
+                                                             std::to_string(square.disk.origin[v])};
             star.descend(result.st[v]);
         }
         sweepVertices(disk, hierarchy, square.squareSides, result.st);

@@ -207,7 +207,8 @@ Mesh Hierarchy::current(std::vector<int>& vertexOf) const
         mesh.positions.push_back(disk_.positions[v]);
     }
     for (size_t f = 0; f < faces_.size(); ++f)
-        if (faceAlive_[f]) mesh.faces.push_back({index[faces_[f][0]], index[faces_[f][1]], index[faces_[f][2]]});
+        if (faceAlive_[f])
+            mesh.faces.push_back({index[faces_[f][0]], index[faces_[f][1]], index[faces_[f][2]]});
     return mesh;
 }
 

@@ -51,16 +51,20 @@ std::pair<int, int> borderPoint(int k, int n)
 {
     const int side = n - 1, along = k % side;
     switch (k / side % 4) {
-    case 0: return {along, 0};
-    case 1: return {side, along};
-    case 2: return {side - along, side};
-    default: return {0, side - along};
+    case 0:
+        return {along, 0};
+    case 1:
+        return {side, along};
+    case 2:
+        return {side - along, side};
+    default:
+        return {0, side - along};
     }
 }
 
 // Value at parameter u of a path, always computed in the path's own direction.
-Vec3 alongPath(const CutPath& path, const std::vector<double>& parameter, const std::vector<Vec3>& surfaceValue,
-               double u)
+Vec3 alongPath(const CutPath& path, const std::vector<double>& parameter,
+               const std::vector<Vec3>& surfaceValue, double u)
 {
     const size_t upper = static_cast<size_t>(
         std::clamp<long>(std::upper_bound(parameter.begin(), parameter.end(), u) - parameter.begin(), 1,
@@ -96,7 +100,8 @@ Result<Image> sampleValues(const SquareDisk& square, const Parameterization& par
                            const std::vector<Vec3>& surfaceValue, int n)
 {
     if (n < square.lowest || (n - 1) % (square.lowest - 1) != 0 || ((n - 1) & (n - 2)) != 0)
-        return Error{ErrorKind::BadArgument, "cannot sample " + std::to_string(n) + " x " + std::to_string(n) +
+        return Error{ErrorKind::BadArgument, "cannot sample " + std::to_string(n) + " x " +
+                                                 std::to_string(n) +
                                                  ": the size must be 2^j + 1 and at least the lowest level " +
                                                  std::to_string(square.lowest)};
     Image image(n);

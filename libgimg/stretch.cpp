@@ -88,7 +88,8 @@ private:
 
     double energyAt(const std::vector<Vec2>& st)
     {
-        return orderedSum(mesh_.faceCount(), scratch_, [&](int f) { return elements_[f].energy(corners(f, st)); });
+        return orderedSum(mesh_.faceCount(), scratch_,
+                          [&](int f) { return elements_[f].energy(corners(f, st)); });
     }
 
     // Row of the local unknown k (0..2: s of corner k, 3..5: t), -1 where the vertex is fixed.
@@ -104,7 +105,8 @@ private:
         for (int f = 0; f < mesh_.faceCount(); ++f)
             for (int i = 0; i < 6; ++i)
                 for (int j = 0; j < 6; ++j)
-                    if (row(f, i) >= row(f, j) && row(f, j) >= 0) entries.emplace_back(row(f, i), row(f, j), 0.0);
+                    if (row(f, i) >= row(f, j) && row(f, j) >= 0)
+                        entries.emplace_back(row(f, i), row(f, j), 0.0);
         hessian_.resize(2 * unknowns_, 2 * unknowns_);
         hessian_.setFromTriplets(entries.begin(), entries.end());
         hessian_.makeCompressed();
@@ -145,7 +147,8 @@ private:
     bool factorize()
     {
         for (double shift = 1e-10; shift < 1; shift *= 100) {
-            for (int k = 0; k < 2 * unknowns_; ++k) hessian_.valuePtr()[hessian_.outerIndexPtr()[k]] *= 1 + shift;
+            for (int k = 0; k < 2 * unknowns_; ++k)
+                hessian_.valuePtr()[hessian_.outerIndexPtr()[k]] *= 1 + shift;
             solver_.factorize(hessian_);
             if (solver_.info() == Eigen::Success) return true;
         }

@@ -38,8 +38,8 @@ inline double firstCollapse(const std::array<Vec2, 3>& p, const std::array<Vec2,
 
 /// The stretch of one triangle. L2(T)^2 = N / (2 a^2), where a is twice its area in the plane and
 /// N = s'Gs + t'Gt with G the Gram matrix of the surface triangle's edges (edge k opposite corner k).
-/// Descent lowers A(T) L2(T)^4: linear interpolation errs by the square of the spacing, so its mean square goes
-/// with the fourth power of the stretch. Unknowns are ordered s0 s1 s2 t0 t1 t2.
+/// Descent lowers A(T) L2(T)^4: linear interpolation errs by the square of the spacing, so its mean square
+/// goes with the fourth power of the stretch. Unknowns are ordered s0 s1 s2 t0 t1 t2.
 class StretchElement
 {
 public:
@@ -83,12 +83,13 @@ public:
         gradA << t[1] - t[2], t[2] - t[0], t[0] - t[1], s[2] - s[1], s[0] - s[2], s[1] - s[0];
         const double a2 = a * a, a3 = a2 * a;
 
-        // With f = N / a^2 the exact Hessian is 2(G+G)/a^2 - 2(dN da' + da dN')/a^3 + 6N da da'/a^4 - 2N d2a/a^3.
-        // With 8 for 6 the first three terms are a square; of the last only the positive part is kept: d2a has
-        // the eigenvalues +-sqrt(3) off the constants.
+        // With f = N / a^2 the exact Hessian is 2(G+G)/a^2 - 2(dN da' + da dN')/a^3 + 6N da da'/a^4 - 2N
+        // d2a/a^3. With 8 for 6 the first three terms are a square; of the last only the positive part is
+        // kept: d2a has the eigenvalues +-sqrt(3) off the constants.
         const Eigen::Matrix<double, 6, 1> gradF = gradN / a2 - (2 * n / a3) * gradA;
-        Eigen::Matrix<double, 6, 6> hessF = -2 / a3 * (gradN * gradA.transpose() + gradA * gradN.transpose()) +
-                                            (8 * n / (a2 * a2)) * (gradA * gradA.transpose());
+        Eigen::Matrix<double, 6, 6> hessF =
+            -2 / a3 * (gradN * gradA.transpose() + gradA * gradN.transpose()) +
+            (8 * n / (a2 * a2)) * (gradA * gradA.transpose());
         Eigen::Matrix3d centred = Eigen::Matrix3d::Constant(-1.0 / 3);
         centred.diagonal().array() += 1;
         Eigen::Matrix3d b;

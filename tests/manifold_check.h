@@ -30,9 +30,11 @@ inline ManifoldCheck checkManifold(const std::vector<Triangle>& faces)
         for (int k = 0; k < 3; ++k) {
             const int a = f[k], b = f[(k + 1) % 3], c = f[(k + 2) % 3];
             if (++directed[{a, b}] > 1)
-                return {"edge " + std::to_string(a) + "-" + std::to_string(b) + " runs twice the same way", 0, 0};
+                return {"edge " + std::to_string(a) + "-" + std::to_string(b) + " runs twice the same way", 0,
+                        0};
             edges.insert(std::minmax(a, b));
-            if (!link[a].insert({b, c}).second) return {"vertex " + std::to_string(a) + " has a forked link", 0, 0};
+            if (!link[a].insert({b, c}).second)
+                return {"vertex " + std::to_string(a) + " has a forked link", 0, 0};
         }
     }
     // Every link must be one chain: an arc (boundary) or a cycle.
@@ -65,7 +67,8 @@ inline ManifoldCheck checkManifold(const std::vector<Triangle>& faces)
     int components = 0;
     for (const auto& [v, parent] : root) components += v == parent;
     if (components != 1) return {std::to_string(components) + " components", 0, 0};
-    const int euler = static_cast<int>(link.size()) - static_cast<int>(edges.size()) + static_cast<int>(faces.size());
+    const int euler =
+        static_cast<int>(link.size()) - static_cast<int>(edges.size()) + static_cast<int>(faces.size());
     check.genus = (2 - euler - check.boundaries) / 2;
     return check;
 }

@@ -35,7 +35,8 @@ std::optional<int> parseArguments(int argc, char** argv, Arguments& a)
     app.add_option("INPUT", a.input, "mesh to encode")->required();
     app.add_option("OUTPUT", a.output, "file to write, .gim")->required();
     app.add_option("--grid", a.grid, "samples a side, 2^j + 1 (default: 257, more if the cut needs it)");
-    app.add_option("--lowest", a.lowest, "samples a side of the lowest level of detail, 2^l + 1 (default: 33, or as needed)");
+    app.add_option("--lowest", a.lowest,
+                   "samples a side of the lowest level of detail, 2^l + 1 (default: 33, or as needed)");
     auto* target = app.add_option_group("target", "what the file is made for; exactly one");
     target->add_option("--bytes", a.bytes, "size of the whole file, never exceeded")
         ->check(CLI::PositiveNumber);
@@ -49,9 +50,11 @@ std::optional<int> parseArguments(int argc, char** argv, Arguments& a)
         ->check(CLI::IsMember({"largest"}));
     const std::map<std::string, Weld> welds{
         {"auto", Weld::Auto}, {"always", Weld::Always}, {"never", Weld::Never}};
-    app.add_option("--weld", a.weld, "merge vertices at equal positions: auto (where that harms nothing), always, never")
+    app.add_option("--weld", a.weld,
+                   "merge vertices at equal positions: auto (where that harms nothing), always, never")
         ->transform(CLI::Transformer(welds));
-    app.add_option("--threads", a.threads, "threads to use (default: one a core); the file does not depend on it")
+    app.add_option("--threads", a.threads,
+                   "threads to use (default: one a core); the file does not depend on it")
         ->check(CLI::NonNegativeNumber);
     app.add_option("--json", a.json, "write a report to this file, or - for standard output");
     app.add_flag("--quiet", a.quiet, "print nothing but errors");
@@ -105,8 +108,7 @@ nlohmann::ordered_json report(const EncodedMesh& encoded, const gim_info& info, 
     json["psnr"] = nullptr; // where the surfaces agree there is no finite value
     if (std::isfinite(encoded.psnr)) json["psnr"] = encoded.psnr;
     json["stretch_efficiency"] = encoded.stretchEfficiency;
-    json["cut"] = {
-        {"nodes", encoded.cutNodes}, {"paths", encoded.cutPaths}, {"length", encoded.cutLength}};
+    json["cut"] = {{"nodes", encoded.cutNodes}, {"paths", encoded.cutPaths}, {"length", encoded.cutLength}};
     json["seconds"] = {{"read", read},
                        {"cut", encoded.seconds.cut},
                        {"parameterize", encoded.seconds.parameterize},
@@ -156,7 +158,8 @@ int main(int argc, char** argv)
     options.progress = [&](const char* stage, double fraction) { progress.show(stage, fraction); };
     Result<EncodedMesh> encoded = encodeMesh(read->mesh, options);
     progress.wipe();
-    if (!encoded) return cli::fail("gimenc", exitFor(encoded.error().kind), a.input + ": " + encoded.error().message);
+    if (!encoded)
+        return cli::fail("gimenc", exitFor(encoded.error().kind), a.input + ": " + encoded.error().message);
 
     std::vector<std::string> notes = warnings(read->report);
     notes.insert(notes.end(), encoded->warnings.begin(), encoded->warnings.end());
@@ -172,10 +175,11 @@ int main(int argc, char** argv)
     if (!a.quiet) {
         for (const std::string& warning : encoded->warnings) std::cerr << "gimenc: " << warning << '\n';
         if (a.json != "-")
-            std::printf("%s: %d faces, genus %d, %d boundaries -> %s: %zu bytes, %d x %d samples, PSNR %.2f dB\n",
-                        a.input.c_str(), encoded->topology.faces, encoded->topology.genus,
-                        encoded->topology.boundaries, a.output.c_str(), encoded->file.size(), encoded->grid,
-                        encoded->grid, encoded->psnr);
+            std::printf(
+                "%s: %d faces, genus %d, %d boundaries -> %s: %zu bytes, %d x %d samples, PSNR %.2f dB\n",
+                a.input.c_str(), encoded->topology.faces, encoded->topology.genus,
+                encoded->topology.boundaries, a.output.c_str(), encoded->file.size(), encoded->grid,
+                encoded->grid, encoded->psnr);
     }
     return cli::Done;
 }

@@ -15,7 +15,8 @@ namespace {
 std::string bunnyPath()
 {
     const char* folder = std::getenv("GIMG_CORPUS_DIR");
-    return (folder != nullptr ? std::string(folder) : std::string(GIMG_SOURCE_CORPUS) + "/cache") + "/bunny.obj";
+    return (folder != nullptr ? std::string(folder) : std::string(GIMG_SOURCE_CORPUS) + "/cache") +
+           "/bunny.obj";
 }
 
 class Bunny : public testing::Test

@@ -1,9 +1,9 @@
 #include "gimg/encode.h"
 
+#include "corpus/shapes.h"
 #include "gimg/decode.h"
 #include "gimg/distance.h"
 #include "manifold_check.h"
-#include "corpus/shapes.h"
 
 #include <gmock/gmock.h>
 #include <gtest/gtest.h>
@@ -52,8 +52,8 @@ double psnrOf(const Mesh& reference, const Mesh& test)
     return distance->psnr();
 }
 
-// The promise of no cracks: the mesh of every level, with one vertex a class of grid points, is a manifold of the
-// input's genus and boundary loops.
+// The promise of no cracks: the mesh of every level, with one vertex a class of grid points, is a manifold of
+// the input's genus and boundary loops.
 class EveryLevel : public testing::TestWithParam<std::pair<int, int>>
 {
 };
@@ -159,8 +159,8 @@ TEST(EncodeRaw, FloatIsBetterThan12BitsAndBothCloseToTheSurface)
 
 TEST(EncodeRaw, FinerGridsConvergeQuadratically)
 {
-    // Linear interpolation of a smooth surface: the error falls by 4, 12 dB, when the grid doubles; the facets of the
-    // reference bound it from below.
+    // Linear interpolation of a smooth surface: the error falls by 4, 12 dB, when the grid doubles; the
+    // facets of the reference bound it from below.
     const Mesh mesh = shapes::torus(3, 1, 480, 240);
     const double coarse = encode(mesh, forTarget(EncodeTarget::RawFloat, 33)).psnr;
     const double fine = encode(mesh, forTarget(EncodeTarget::RawFloat, 65)).psnr;
@@ -182,7 +182,8 @@ TEST(EncodeNormals, AreDecodedAtTheirOwnResolution)
     for (int j = 0; j < 65; ++j)
         for (int i = 0; i < 65; ++i) {
             Vec3 p, n;
-            for (int k = 0; k < 3; ++k) p[k] = images->geometry.at(i, j, k), n[k] = images->normals.at(2 * i, 2 * j, k);
+            for (int k = 0; k < 3; ++k)
+                p[k] = images->geometry.at(i, j, k), n[k] = images->normals.at(2 * i, 2 * j, k);
             EXPECT_NEAR(n.norm(), 1, 1e-6);
             worst = std::min(worst, n.dot(p) / p.norm());
         }

@@ -1,6 +1,6 @@
 // The command line of gimenc, run as a user does.
-#include "gimg/mesh_io.h"
 #include "corpus/shapes.h"
+#include "gimg/mesh_io.h"
 #include "temporary_files.h"
 
 #include <gmock/gmock.h>
@@ -61,7 +61,8 @@ TEST_F(Gimenc, ReportHasTheDocumentedKeys)
     EXPECT_EQ(json.at("cut").at("nodes"), 2);
     EXPECT_GT(json.at("cut").at("length").get<double>(), 2 * 3.14);
     double sum = 0;
-    for (const char* key : {"read", "cut", "parameterize", "sample", "code"}) sum += json.at("seconds").at(key).get<double>();
+    for (const char* key : {"read", "cut", "parameterize", "sample", "code"})
+        sum += json.at("seconds").at(key).get<double>();
     EXPECT_GE(json.at("seconds").at("total").get<double>(), 0.9 * sum);
     EXPECT_TRUE(json.at("warnings").is_array());
 }
@@ -88,8 +89,10 @@ TEST_F(Gimenc, ExitCodesTellRefusedUsageAndUnreachableApart)
 TEST_F(Gimenc, RefusalLeavesAnEarlierFileAlone)
 {
     write("keep.gim", "earlier");
-    EXPECT_EQ(gimenc("--bytes 2000" + std::string(" '") + write("empty.ply", "") + "'" + file("keep.gim")).code, 1);
-    EXPECT_EQ(gimenc("--bytes 10 --grid 33" + mesh("s.ply", shapes::sphere(1, 4)) + file("keep.gim")).code, 3);
+    EXPECT_EQ(
+        gimenc("--bytes 2000" + std::string(" '") + write("empty.ply", "") + "'" + file("keep.gim")).code, 1);
+    EXPECT_EQ(gimenc("--bytes 10 --grid 33" + mesh("s.ply", shapes::sphere(1, 4)) + file("keep.gim")).code,
+              3);
     EXPECT_EQ(read(path("keep.gim")), "earlier");
 }
 
@@ -104,7 +107,8 @@ TEST_F(Gimenc, SeveralComponentsAreRefusedUnlessTheLargestIsAskedFor)
     const Ended refused = gimenc("--bytes 2000 --grid 65" + input + file("two.gim"));
     EXPECT_EQ(refused.code, 1);
     EXPECT_THAT(refused.err, HasSubstr("2 connected components"));
-    const Ended taken = gimenc("--bytes 2000 --grid 65 --component largest --json -" + input + file("two.gim"));
+    const Ended taken =
+        gimenc("--bytes 2000 --grid 65 --component largest --json -" + input + file("two.gim"));
     ASSERT_EQ(taken.code, 0) << taken.err;
     EXPECT_EQ(nlohmann::json::parse(taken.out).at("genus"), 1);
     EXPECT_FALSE(nlohmann::json::parse(taken.out).at("warnings").empty());

@@ -68,9 +68,11 @@ TEST_P(BorderOfShape, CutNodesFallOnGridPointsOfTheLowestLevel)
 TEST_P(BorderOfShape, LengthsFollowTheSurface)
 {
     double total = 0;
-    for (const DiskSide& side : square_.disk.sides) total += cutLength(square_.surface, {{square_.cut.paths[side.path]}});
+    for (const DiskSide& side : square_.disk.sides)
+        total += cutLength(square_.surface, {{square_.cut.paths[side.path]}});
     for (size_t p = 0; p < square_.cut.paths.size(); ++p) {
-        const double share = cutLength(square_.surface, {{square_.cut.paths[p]}}) / total * 4 * (square_.lowest - 1);
+        const double share =
+            cutLength(square_.surface, {{square_.cut.paths[p]}}) / total * 4 * (square_.lowest - 1);
         // Short paths may be stretched to what a simplicial seam needs; the others give way a little.
         EXPECT_LE(square_.pathLength[p], std::max(4.0, share + 1.5));
         EXPECT_GE(square_.pathLength[p], 0.6 * share - 1.5);
@@ -94,7 +96,8 @@ TEST_P(BorderOfShape, CornersAreVerticesAndNoTipIsNear)
     for (const DiskSide& side : square_.disk.sides) {
         const int v = side.vertices.front();
         if (valence[square_.disk.origin[v]] != 1) continue;
-        for (const Vec2& corner : corners) EXPECT_GT((square_.borderPosition[v] - corner).norm(), 1.0 / square_.lowest);
+        for (const Vec2& corner : corners)
+            EXPECT_GT((square_.borderPosition[v] - corner).norm(), 1.0 / square_.lowest);
     }
 }
 
@@ -102,7 +105,8 @@ TEST_P(BorderOfShape, NoInteriorEdgeJoinsTwoBorderVertices)
 {
     const Halfedges he(square_.disk.mesh.faces, square_.disk.mesh.vertexCount());
     for (int h = 0; h < he.count(); ++h)
-        EXPECT_FALSE(!he.onBoundary(h) && square_.squareSides[he.tail(h)] != 0 && square_.squareSides[he.head(h)] != 0);
+        EXPECT_FALSE(!he.onBoundary(h) && square_.squareSides[he.tail(h)] != 0 &&
+                     square_.squareSides[he.head(h)] != 0);
     // Splitting changed neither the surface nor its topology.
     EXPECT_NEAR(surfaceArea(square_.surface), surfaceArea(mesh_), 1e-9 * surfaceArea(mesh_));
     EXPECT_EQ(topology(square_.surface).genus, GetParam().first);

@@ -43,7 +43,8 @@ TEST_P(CutOfShape, OpensToADiskAndKeepsTheBoundary)
         ASSERT_GE(path.vertices.size(), 2u);
         for (size_t i = 0; i + 1 < path.vertices.size(); ++i)
             EXPECT_TRUE(edges.count(std::minmax(path.vertices[i], path.vertices[i + 1])));
-        for (size_t i = 1; i + 1 < path.vertices.size(); ++i) EXPECT_TRUE(inner.insert(path.vertices[i]).second);
+        for (size_t i = 1; i + 1 < path.vertices.size(); ++i)
+            EXPECT_TRUE(inner.insert(path.vertices[i]).second);
     }
     const Result<DiskMesh> disk = openAlong(mesh, cut);
     ASSERT_TRUE(disk.ok()) << disk.error().message;

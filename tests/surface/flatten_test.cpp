@@ -67,7 +67,8 @@ TEST(StretchElement, DerivativesAgreeWithDifferences)
     for (int trial = 0; trial < 20; ++trial) {
         const auto point = [&] { return Vec3(unit(random), unit(random), unit(random)); };
         const StretchElement element(point(), point(), point());
-        std::array<Vec2, 3> p = {Vec2(0, 0), Vec2(1, 0.2 * unit(random)), Vec2(unit(random), 0.5 + unit(random))};
+        std::array<Vec2, 3> p = {Vec2(0, 0), Vec2(1, 0.2 * unit(random)),
+                                 Vec2(unit(random), 0.5 + unit(random))};
         const StretchElement::Derivatives d = element.derivatives(p);
         for (int k = 0; k < 6; ++k) {
             const double h = 1e-6;
@@ -153,7 +154,8 @@ TEST_P(FlattenShape, EmbedsWithoutFlippedTriangles)
     ASSERT_TRUE(map.ok()) << map.error().message;
     EXPECT_EQ(flippedTriangles(square->disk.mesh.faces, map->st), 0);
     double area = 0;
-    for (const Triangle& f : square->disk.mesh.faces) area += doubleArea({map->st[f[0]], map->st[f[1]], map->st[f[2]]});
+    for (const Triangle& f : square->disk.mesh.faces)
+        area += doubleArea({map->st[f[0]], map->st[f[1]], map->st[f[2]]});
     EXPECT_NEAR(area / 2, 1.0, 1e-9);
     for (size_t v = 0; v < map->st.size(); ++v)
         EXPECT_TRUE(square->squareSides[v] == 0 || map->st[v] == square->borderPosition[v]);
@@ -177,8 +179,8 @@ TEST(Flatten, ADiskGetsAnEvenMap)
 
 TEST(Flatten, ALongTubeClosedAtItsTopDoesNotShrinkAway)
 {
-    // Mean-value coordinates alone shrink the end of a tube of height h and radius r like exp(-h / r), here to
-    // 1e-17 of the area; evenly spread it is one third of the surface.
+    // Mean-value coordinates alone shrink the end of a tube of height h and radius r like exp(-h / r), here
+    // to 1e-17 of the area; evenly spread it is one third of the surface.
     Mesh mesh = shapes::cylinder(0.25, 10, 24, 200);
     const int top = mesh.vertexCount();
     mesh.positions.emplace_back(0, 0, 10);

@@ -23,7 +23,10 @@ Flattened flatten(const Mesh& mesh, const BorderOptions& options = {})
     return {std::move(*square), std::move(*map)};
 }
 
-Vec3 sampleAt(const FloatImage& image, int i, int j) { return {image.at(i, j, 0), image.at(i, j, 1), image.at(i, j, 2)}; }
+Vec3 sampleAt(const FloatImage& image, int i, int j)
+{
+    return {image.at(i, j, 0), image.at(i, j, 1), image.at(i, j, 2)};
+}
 
 std::pair<int, int> borderPoint(int k, int n)
 {
@@ -46,8 +49,8 @@ TEST_P(SampledShape, MatesAgreeToTheLastBitAndCutNodesAreHit)
     const Result<FloatImage> image = sampleGeometry(flat.square, flat.map, n);
     const Result<FloatImage> normals = sampleNormals(flat.square, flat.map, n);
     ASSERT_TRUE(image.ok() && normals.ok());
-    const codec::Seam seam{static_cast<uint32_t>(flat.square.lowest), static_cast<uint32_t>(flat.square.start),
-                           flat.square.seam()};
+    const codec::Seam seam{static_cast<uint32_t>(flat.square.lowest),
+                           static_cast<uint32_t>(flat.square.start), flat.square.seam()};
     const std::vector<uint32_t> classes = codec::borderClasses(seam, static_cast<uint32_t>(n));
     ASSERT_EQ(classes.size(), static_cast<size_t>(4 * (n - 1)));
     for (size_t k = 0; k < classes.size(); ++k) {

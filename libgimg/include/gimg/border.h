@@ -16,8 +16,9 @@ struct BorderOptions
 {
     static constexpr int kDefaultGrid = 257;
 
-    int grid = 0;   ///< samples a side, 2^j + 1; 0: 257, or the next larger grid that can hold the cut
-    int lowest = 0; ///< lowest level of detail, 2^l + 1 <= grid; 0: 33 (less for small grids), or the next that fits
+    int grid = 0; ///< samples a side, 2^j + 1; 0: 257, or the next larger grid that can hold the cut
+    int lowest =
+        0; ///< lowest level of detail, 2^l + 1 <= grid; 0: 33 (less for small grids), or the next that fits
 };
 
 /// A disk with its boundary laid out on the unit square.
@@ -33,21 +34,21 @@ struct SquareDisk
     std::vector<int> pathLength;                    ///< per cut-path, in lowest-grid units
     std::vector<std::vector<double>> pathParameter; ///< per path vertex, rising from 0 to pathLength
 
-    std::vector<Vec2> borderPosition;  ///< per disk vertex: (s,t); meaningful on the border only
-    std::vector<uint8_t> squareSides;  ///< per disk vertex: bit mask of the square's sides it lies on, 0 inside
+    std::vector<Vec2> borderPosition; ///< per disk vertex: (s,t); meaningful on the border only
+    std::vector<uint8_t>
+        squareSides; ///< per disk vertex: bit mask of the square's sides it lies on, 0 inside
 
     std::vector<gim_side> seam() const; ///< the word that the decoder fuses by
 };
 
 /// Lays the opened cut out along the unit square, counter-clockwise from (0,0): every cut-path gets a whole
-/// number of lowest-grid units in proportion to its length, mates the same number; the square's corners fall on
-/// vertices (edges across them are split, and their mates); no cut-node of valence 1 falls on a corner;
+/// number of lowest-grid units in proportion to its length, mates the same number; the square's corners fall
+/// on vertices (edges across them are split, and their mates); no cut-node of valence 1 falls on a corner;
 /// interior edges between two border vertices are split at their midpoints, the faces beside them with them,
-/// so that no triangle lies on one side of the square and the interior is connected. The seam stays a simplicial
-/// complex at every level of detail.
-/// Errors: TargetUnreachable if the cut does not fit the asked grid or lowest level (names what would),
-/// BadArgument for sizes that are not 2^j + 1.
-/// Source: thesis §3.1.1, boundary parameterization.
+/// so that no triangle lies on one side of the square and the interior is connected. The seam stays a
+/// simplicial complex at every level of detail. Errors: TargetUnreachable if the cut does not fit the asked
+/// grid or lowest level (names what would), BadArgument for sizes that are not 2^j + 1. Source: thesis
+/// §3.1.1, boundary parameterization.
 Result<SquareDisk> layOutBorder(const Mesh& mesh, const CutGraph& cut, const BorderOptions& options);
 
 } // namespace gimg

@@ -40,7 +40,8 @@ public:
     int twin(int h) const { return twin_[h]; }
     bool onBoundary(int h) const { return twin_[h] < 0; }
 
-    /// An outgoing halfedge of vertex v, the most clockwise one where v lies on the boundary; -1 if unreferenced.
+    /// An outgoing halfedge of vertex v, the most clockwise one where v lies on the boundary; -1 if
+    /// unreferenced.
     int outgoing(int v) const { return outgoing_[v]; }
     /// The next outgoing halfedge counter-clockwise around the tail of h; -1 past the boundary.
     int rotateCcw(int h) const { return twin_[prev(h)]; }

@@ -26,8 +26,8 @@ struct DescentOptions
 };
 
 /// Lowers sum A(T) L2(T)^4 by Newton steps with a convexified Hessian; a line search keeps every triangle
-/// positively oriented. (The fourth power rather than Sander's second, because that is how the error of linear
-/// interpolation grows: on the bunny it is worth 1.2 dB at 257 x 257.) `st` must start without flipped
+/// positively oriented. (The fourth power rather than Sander's second, because that is how the error of
+/// linear interpolation grows: on the bunny it is worth 1.2 dB at 257 x 257.) `st` must start without flipped
 /// triangles. Returns the final sum.
 double minimizeStretch(const Mesh& mesh, const std::vector<bool>& fixed, std::vector<Vec2>& st,
                        const DescentOptions& options);
