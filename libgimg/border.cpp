@@ -100,8 +100,7 @@ std::vector<gim_side> seamWord(const std::vector<DiskSide>& sides, const CutGrap
     return word;
 }
 
-// Cut-node valences, counted as the number of border occurrences (plus one on an original boundary, where
-// the cut has one more edge than the opened border has corners).
+// The valence of every cut-node in the cut: how many path ends meet there.
 std::map<int, int> nodeValences(const CutGraph& cut)
 {
     std::map<int, int> valence;

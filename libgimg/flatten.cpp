@@ -107,6 +107,28 @@ private:
     std::vector<std::pair<Vec2, Vec2>> edges_; // outer edge of each triangle
 };
 
+// The hierarchy's current mesh by itself, with the positions of its vertices.
+struct Level
+{
+    Level(const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides, const std::vector<Vec2>& st)
+        : mesh(hierarchy.current(vertexOf))
+    {
+        for (int v : vertexOf) {
+            fixed.push_back(squareSides[v] != 0);
+            position.push_back(st[v]);
+        }
+    }
+    void storePositions(std::vector<Vec2>& st) const
+    {
+        for (size_t i = 0; i < vertexOf.size(); ++i) st[vertexOf[i]] = position[i];
+    }
+
+    std::vector<int> vertexOf; // the disk's index of each vertex; declared before mesh, which fills it
+    Mesh mesh;
+    std::vector<bool> fixed;
+    std::vector<Vec2> position;
+};
+
 // Moves vertices of the current mesh one by one: all of them twice, then those at slivers until none is left.
 // Newton's global step is no longer than the worst sliver allows; this frees the slivers first.
 void sweepVertices(const Mesh& disk, const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides,
@@ -148,40 +170,14 @@ void sweepVertices(const Mesh& disk, const Hierarchy& hierarchy, const std::vect
     }
 }
 
-// Lowers the stretch of the hierarchy's current mesh; positions stay indexed by the disk's vertices.
-void relaxLevel(const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides, std::vector<Vec2>& st,
-                const DescentOptions& options)
-{
-    std::vector<int> vertexOf;
-    const Mesh level = hierarchy.current(vertexOf);
-    std::vector<bool> fixed(vertexOf.size());
-    std::vector<Vec2> position(vertexOf.size());
-    for (size_t i = 0; i < vertexOf.size(); ++i) {
-        fixed[i] = squareSides[vertexOf[i]] != 0;
-        position[i] = st[vertexOf[i]];
-    }
-    minimizeStretch(level, fixed, position, options);
-    for (size_t i = 0; i < vertexOf.size(); ++i) st[vertexOf[i]] = position[i];
-}
-
 // The coarsest level is a wheel: any convex combination of the border embeds it.
-Status startCoarsest(const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides,
-                     std::vector<Vec2>& st)
+Status startCoarsest(Level& level)
 {
-    std::vector<int> vertexOf;
-    const Mesh level = hierarchy.current(vertexOf);
-    std::vector<bool> fixed(vertexOf.size());
-    std::vector<Vec2> position(vertexOf.size());
-    for (size_t i = 0; i < vertexOf.size(); ++i) {
-        fixed[i] = squareSides[vertexOf[i]] != 0;
-        position[i] = st[vertexOf[i]];
-    }
-    if (const Status mapped = meanValueMap(level, fixed, position); !mapped) return mapped;
-    if (const int flipped = flippedTriangles(level.faces, position); flipped > 0)
+    if (const Status mapped = meanValueMap(level.mesh, level.fixed, level.position); !mapped) return mapped;
+    if (const int flipped = flippedTriangles(level.mesh.faces, level.position); flipped > 0)
         return Error{ErrorKind::FlippedTriangle, std::to_string(flipped) + " of " +
-                                                     std::to_string(level.faces.size()) +
+                                                     std::to_string(level.mesh.faceCount()) +
                                                      " triangles of the coarsest level are flipped"};
-    for (size_t i = 0; i < vertexOf.size(); ++i) st[vertexOf[i]] = position[i];
     return Done{};
 }
 
@@ -189,6 +185,7 @@ Status startCoarsest(const Hierarchy& hierarchy, const std::vector<uint8_t>& squ
 
 Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progress& progress)
 {
+    constexpr DescentOptions kFirstDescent{50, 1e-4}, kDescent{30, 1e-3}, kLastDescent{12, 1e-3};
     const Mesh& disk = square.disk.mesh;
     Parameterization result;
     result.st = square.borderPosition;
@@ -196,9 +193,12 @@ Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progres
     const int interior = hierarchy.interiorCount();
     hierarchy.coarsen();
     if (progress) progress(0.1);
-    if (const Status started = startCoarsest(hierarchy, square.squareSides, result.st); !started)
-        return started.error();
-    relaxLevel(hierarchy, square.squareSides, result.st, {50, 1e-4});
+
+    Level coarsest(hierarchy, square.squareSides, result.st);
+    if (const Status started = startCoarsest(coarsest); !started) return started.error();
+    minimizeStretch(coarsest.mesh, coarsest.fixed, coarsest.position, kFirstDescent);
+    coarsest.storePositions(result.st);
+
     while (!hierarchy.isFull()) {
         const int target = hierarchy.interiorCount() * kGrowth;
         while (!hierarchy.isFull() && hierarchy.interiorCount() < target) {
@@ -210,7 +210,10 @@ Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progres
             star.descend(result.st[v]);
         }
         sweepVertices(disk, hierarchy, square.squareSides, result.st);
-        relaxLevel(hierarchy, square.squareSides, result.st, {hierarchy.isFull() ? 12 : 30, 1e-3});
+        Level level(hierarchy, square.squareSides, result.st);
+        minimizeStretch(level.mesh, level.fixed, level.position,
+                        hierarchy.isFull() ? kLastDescent : kDescent);
+        level.storePositions(result.st);
         if (progress) progress(0.1 + 0.9 * hierarchy.interiorCount() / std::max(1, interior));
     }
     if (const int flipped = flippedTriangles(disk.faces, result.st); flipped > 0)

@@ -52,48 +52,6 @@ double psnrOf(const Mesh& reference, const Mesh& test)
     return distance->psnr();
 }
 
-// The promise of no cracks: the mesh of every level, with one vertex a class of grid points, is a manifold of
-// the input's genus and boundary loops.
-class EveryLevel : public testing::TestWithParam<std::pair<int, int>>
-{
-};
-
-TEST_P(EveryLevel, HasTheTopologyOfTheInput)
-{
-    const auto [genus, loops] = GetParam();
-    const Mesh mesh = shapes::surfaceOfGenus(genus, loops, 6);
-    const EncodedMesh encoded = encode(mesh, forBytes(4000));
-    EXPECT_EQ(encoded.topology.genus, genus);
-    EXPECT_EQ(encoded.topology.boundaries, loops);
-    const Result<DecodedImages> images = decodeImages(encoded.file);
-    ASSERT_TRUE(images.ok());
-    EXPECT_EQ(static_cast<int>(images->info.grid), encoded.grid);
-    EXPECT_GE(images->info.levels, 2u);
-    for (unsigned level = 0; level < images->info.levels; ++level) {
-        const Mesh decoded = decodedLevel(encoded, level);
-        const test::ManifoldCheck check = test::checkManifold(decoded.faces);
-        EXPECT_EQ(check.fault, "") << "level " << level;
-        EXPECT_EQ(check.genus, genus) << "level " << level;
-        EXPECT_EQ(check.boundaries, loops) << "level " << level;
-        for (const Vec3& p : decoded.positions) ASSERT_TRUE(p.allFinite());
-        const int n = (encoded.grid - 1) >> level;
-        EXPECT_EQ(decoded.faceCount(), 2 * n * n);
-    }
-    // Without fusing every sample is its own vertex: a disk.
-    const test::ManifoldCheck open = test::checkManifold(decodedLevel(encoded, 1, GIM_NO_FUSE).faces);
-    EXPECT_EQ(open.genus, 0);
-    EXPECT_EQ(open.boundaries, 1);
-}
-
-std::vector<std::pair<int, int>> generaAndLoops()
-{
-    std::vector<std::pair<int, int>> all;
-    for (int genus : {0, 1, 2, 3, 7})
-        for (int loops = 0; loops <= 4; ++loops) all.emplace_back(genus, loops);
-    return all;
-}
-INSTANTIATE_TEST_SUITE_P(AllTopologies, EveryLevel, testing::ValuesIn(generaAndLoops()));
-
 TEST(EncodeBytes, NeverOverAndAtMostOnePercentOr24Under)
 {
     const Mesh mesh = shapes::wavySphere(1, 0.3, 5, 24);
@@ -161,7 +119,7 @@ TEST(EncodeRaw, FinerGridsConvergeQuadratically)
 {
     // Linear interpolation of a smooth surface: the error falls by 4, 12 dB, when the grid doubles; the
     // facets of the reference bound it from below.
-    const Mesh mesh = shapes::torus(3, 1, 480, 240);
+    const Mesh mesh = shapes::torus(3, 1, 192, 96);
     const double coarse = encode(mesh, forTarget(EncodeTarget::RawFloat, 33)).psnr;
     const double fine = encode(mesh, forTarget(EncodeTarget::RawFloat, 65)).psnr;
     EXPECT_GT(fine, coarse + 9.5);
