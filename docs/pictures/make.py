@@ -324,12 +324,13 @@ def rates(studio):
 
 def seam(studio):
     """The widest crack at a low rate: open, fused, fused and diffused."""
-    gim = studio.encoded(studio.shape("genus", "--genus", "3", "--resolution", "48"), "--bytes", 1000)
+    gim = studio.encoded(studio.shape("torus", "--resolution", "48"), "--bytes", 250)
     opened, fused, diffused = (studio.decoded(gim, *flags) for flags in (["--no-fuse"], ["--no-diffuse"], []))
     gap = np.linalg.norm(opened.positions[opened.border()] - fused.positions[fused.border()], axis=1)
-    middle = fused.border()[gap.argmax()]
-    rotation = facing(diffused.vertex_normals()[diffused.border()[gap.argmax()]])
-    view = View(diffused, rotation, 280, 240, zoom=3.5, at=fused.positions[middle])
+    normal = diffused.vertex_normals()[diffused.border()]
+    worst = (gap * np.maximum(normal @ GENUS_VIEW[2], 0)).argmax()  # of those on the side that other pictures show
+    rotation = facing(normal[worst] + GENUS_VIEW[2])
+    view = View(diffused, rotation, 280, 240, zoom=2, at=fused.positions[fused.border()[worst]])
     panels = [render(mesh, view, smooth=False, inside=INSIDE) for mesh in (opened, fused, diffused)]
     save(row(panels, ["as coded", "fused", "fused and diffused"]), "seam.png")
 
