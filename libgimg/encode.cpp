@@ -59,6 +59,7 @@ Result<double> decodedPsnr(const std::vector<uint8_t>& file, const SurfaceMeasur
     if (!images) return images.error();
     const Result<Mesh> mesh = levelMesh(file, *images, 0);
     if (!mesh) return mesh.error();
+    if (!(surfaceArea(*mesh) > 0)) return 0.0; // so few bytes that nothing is left
     const Result<SurfaceDistance> distance = measure.against(*mesh);
     if (!distance) return distance.error();
     return distance->psnr();
@@ -218,6 +219,7 @@ Result<EncodedMesh> encodeMesh(const Mesh& mesh, const EncodeOptions& options)
     const Result<double> psnr = decodedPsnr(out.file, measure);
     if (!psnr) return psnr.error();
     out.psnr = *psnr;
+    if (out.psnr == 0) out.warnings.push_back("the decoded surface has no area: the target is too small");
     out.seconds.code = watch.lap();
     return out;
 }

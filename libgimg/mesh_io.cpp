@@ -26,7 +26,9 @@ std::vector<std::string> warnings(const RepairReport& report)
     say(report.flippedFaces, "face", "faces", "flipped for a consistent orientation");
     if (report.components > 1)
         lines.push_back("the largest of " + std::to_string(report.components) + " components taken, " +
-                        std::to_string(report.droppedFaces) + " triangles of the others dropped");
+                        std::to_string(report.droppedFaces) +
+                        (report.droppedFaces == 1 ? " triangle of the others dropped"
+                                                  : " triangles of the others dropped"));
     return lines;
 }
 

@@ -10,7 +10,6 @@
 
 #include <chrono>
 #include <cmath>
-#include <map>
 
 namespace {
 
@@ -23,7 +22,7 @@ struct Arguments
     std::optional<size_t> bytes;
     std::optional<double> psnr;
     std::string raw, component, json;
-    Weld weld = Weld::Auto;
+    std::string weld = "auto";
     bool quiet = false;
 };
 
@@ -53,17 +52,21 @@ std::optional<int> parseArguments(int argc, char** argv, Arguments& a)
     app.add_option("--normals", a.normals, "add a normal image of this many samples a side, 2^k + 1");
     app.add_option("--component", a.component, "of several components take the largest")
         ->check(CLI::IsMember({"largest"}));
-    const std::map<std::string, Weld> welds{
-        {"auto", Weld::Auto}, {"always", Weld::Always}, {"never", Weld::Never}};
     app.add_option("--weld", a.weld,
                    "merge vertices at equal positions: auto (where that harms nothing), always, never")
-        ->transform(CLI::Transformer(welds));
+        ->check(CLI::IsMember({"auto", "always", "never"}));
     app.add_option("--threads", a.threads,
                    "threads to use (default: one a core); the file does not depend on it")
         ->check(positive);
     app.add_option("--json", a.json, "write a report to this file, or - for standard output");
     app.add_flag("--quiet", a.quiet, "print nothing but errors");
     return cli::parse(app, argc, argv);
+}
+
+ReadOptions readOptions(const Arguments& a)
+{
+    const Weld weld = a.weld == "always" ? Weld::Always : a.weld == "never" ? Weld::Never : Weld::Auto;
+    return {weld, !a.component.empty()};
 }
 
 EncodeOptions encodeOptions(const Arguments& a)
@@ -154,9 +157,13 @@ int main(int argc, char** argv)
     const ProgressLine progress(a.quiet);
 
     progress.show("read", 0);
-    Result<MeshFile> read = readMesh(a.input, {a.weld, !a.component.empty()});
+    Result<MeshFile> read = readMesh(a.input, readOptions(a));
     progress.wipe();
-    if (!read) return cli::fail("gimenc", cli::Refused, read.error().message);
+    if (!read) {
+        const bool several = read.error().kind == ErrorKind::SeveralComponents;
+        return cli::fail("gimenc", cli::Refused,
+                         read.error().message + (several ? "; --component largest takes the largest" : ""));
+    }
     const double readSeconds = secondsSince(start);
 
     EncodeOptions options = encodeOptions(a);

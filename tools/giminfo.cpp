@@ -168,7 +168,8 @@ void print(const Summary& s, std::size_t bytes)
               << "surface    genus " << s.seam.genus << ", " << s.seam.boundary_loops << " boundary loop"
               << (s.seam.boundary_loops == 1 ? "" : "s") << '\n'
               << "seam       " << s.word() << '\n'
-              << "           " << s.seam.paths << " paths, " << s.seam.cut_nodes << " nodes, starts at "
+              << "           " << s.seam.paths << (s.seam.paths == 1 ? " path, " : " paths, ")
+              << s.seam.cut_nodes << (s.seam.cut_nodes == 1 ? " node" : " nodes") << ", starts at "
               << s.seam.start << " of " << 4 * (s.info.lowest - 1) << '\n'
               << "lengths   ";
     for (const gim_side& side : s.sides)

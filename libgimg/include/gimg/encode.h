@@ -45,7 +45,7 @@ struct EncodedMesh
     int grid = 0;
     int lowest = 0;
     int normals = 0;
-    double psnr = 0;              ///< of the decoded finest level against the input; infinite if they agree
+    double psnr = 0;              ///< of the decoded finest level against the input; infinite if they agree, 0 if nothing is left
     double stretchEfficiency = 0; ///< see stretchEfficiency()
     int cutNodes = 0;
     int cutPaths = 0;
