@@ -168,8 +168,9 @@ std::optional<Layout> layoutAt(int lowest, const CutGraph& cut, const DiskMesh& 
 
 Error doesNotFit(const CutGraph& cut, const char* what, int size)
 {
-    return {ErrorKind::TargetUnreachable, "the cut has " + std::to_string(cut.paths.size()) +
-                                              " paths, too many for " + what + " " + std::to_string(size) +
+    const std::string paths = cut.paths.size() == 1 ? " path" : " paths";
+    return {ErrorKind::TargetUnreachable, "the cut has " + std::to_string(cut.paths.size()) + paths +
+                                              ", too much for " + what + " " + std::to_string(size) +
                                               "; use a larger one"};
 }
 

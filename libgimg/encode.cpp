@@ -10,6 +10,7 @@
 
 #include <tbb/global_control.h>
 
+#include <algorithm>
 #include <chrono>
 #include <cmath>
 #include <cstdio>
@@ -61,6 +62,7 @@ Result<double> decodedPsnr(const std::vector<uint8_t>& file, const SurfaceMeasur
     if (!mesh) return mesh.error();
     if (!(surfaceArea(*mesh) > 0)) return 0.0; // so few bytes that nothing is left
     const Result<SurfaceDistance> distance = measure.against(*mesh);
+    if (!distance && distance.error().kind == ErrorKind::EmptyMesh) return 0.0; // or next to nothing
     if (!distance) return distance.error();
     return distance->psnr();
 }
@@ -156,6 +158,33 @@ Result<std::vector<uint8_t>> code(const codec::Encoder& encoder, const SurfaceMe
     return fileOf(encoder.encode(settings));
 }
 
+// Samples are float32: what they cannot hold is refused, what they hold badly is said.
+Status checkScale(const Mesh& mesh, std::vector<std::string>& warnings)
+{
+    constexpr double kSmallest = 1e-15, kLargest = 1e15; // squares and products of four stay in range
+    constexpr double kCoarsestStep = 1e-3, kDoubtfulStep = 1e-5;
+    const double diagonal = boundingBoxDiagonal(mesh);
+    char text[160];
+    if (!(diagonal >= kSmallest && diagonal <= kLargest)) {
+        std::snprintf(text, sizeof text, "the bounding box has a diagonal of %g; it must be from %g to %g",
+                      diagonal, kSmallest, kLargest);
+        return Error{ErrorKind::NotFinite, text};
+    }
+    if (!(surfaceArea(mesh) > 0)) return Error{ErrorKind::EmptyMesh, "the surface has no area"};
+    double farthest = 0;
+    for (const Vec3& p : mesh.positions) farthest = std::max(farthest, p.cwiseAbs().maxCoeff());
+    const double step = std::ldexp(farthest, -24) / diagonal;
+    std::snprintf(text, sizeof text,
+                  "coordinates reach %g: float32 samples hold them to %.2g of the diagonal only", farthest,
+                  step);
+    if (step > kCoarsestStep)
+        return Error{ErrorKind::NotFinite, std::string(text) + "; move the surface to the origin"};
+    if (step > kDoubtfulStep) warnings.push_back(text);
+    return Done{};
+}
+
+bool isImageSize(int n) { return n >= 3 && n <= BorderOptions::kLargestGrid && ((n - 1) & (n - 2)) == 0; }
+
 } // namespace
 
 Result<EncodedMesh> encodeMesh(const Mesh& mesh, const EncodeOptions& options)
@@ -168,7 +197,13 @@ Result<EncodedMesh> encodeMesh(const Mesh& mesh, const EncodeOptions& options)
         if (options.progress) options.progress(name, fraction);
     };
 
+    if (options.normals != 0 && !isImageSize(options.normals))
+        return Error{ErrorKind::BadArgument, "normal image of " + std::to_string(options.normals) +
+                                                 " is not 2^k + 1 between 3 and " +
+                                                 std::to_string(BorderOptions::kLargestGrid)};
+
     EncodedMesh out;
+    if (const Status scale = checkScale(mesh, out.warnings); !scale) return scale.error();
     Stopwatch watch;
     out.topology = topology(mesh);
 
@@ -219,7 +254,8 @@ Result<EncodedMesh> encodeMesh(const Mesh& mesh, const EncodeOptions& options)
     const Result<double> psnr = decodedPsnr(out.file, measure);
     if (!psnr) return psnr.error();
     out.psnr = *psnr;
-    if (out.psnr == 0) out.warnings.push_back("the decoded surface has no area: the target is too small");
+    if (out.psnr == 0)
+        out.warnings.push_back("the decoded surface has hardly any area: its PSNR counts as 0 dB");
     out.seconds.code = watch.lap();
     return out;
 }

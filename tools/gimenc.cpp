@@ -10,6 +10,7 @@
 
 #include <chrono>
 #include <cmath>
+#include <filesystem>
 
 namespace {
 
@@ -153,6 +154,9 @@ int main(int argc, char** argv)
 {
     Arguments a;
     if (const std::optional<int> code = parseArguments(argc, argv, a)) return *code;
+    std::error_code ignored;
+    if (std::filesystem::equivalent(a.input, a.output, ignored))
+        return cli::fail("gimenc", cli::Usage, a.output + ": is the input itself");
     const auto start = std::chrono::steady_clock::now();
     const ProgressLine progress(a.quiet);
 

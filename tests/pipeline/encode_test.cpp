@@ -170,6 +170,29 @@ TEST(EncodeScale, LargeOffsetsKeepTheirPrecision)
     EXPECT_GT(lossy.psnr, 55);
 }
 
+TEST(EncodeScale, WhatFloat32CannotHoldIsRefusedAndWhatItHoldsBadlyIsSaid)
+{
+    const auto moved = [](double scale, double offset) {
+        Mesh mesh = shapes::torus(2, 1, 16, 8);
+        for (Vec3& p : mesh.positions) p = scale * p + Vec3(offset, 0, 0);
+        return encodeMesh(mesh, forBytes(2000, 33));
+    };
+    for (const Result<EncodedMesh>& bad : {moved(1e30, 0), moved(1e-30, 0), moved(1e300, 0), moved(1, 1e9)}) {
+        ASSERT_FALSE(bad.ok());
+        EXPECT_EQ(bad.error().kind, ErrorKind::NotFinite);
+    }
+    const Result<EncodedMesh> doubtful = moved(1, 1e4);
+    ASSERT_TRUE(doubtful.ok());
+    ASSERT_EQ(doubtful->warnings.size(), 1u);
+    EXPECT_THAT(doubtful->warnings[0], testing::HasSubstr("float32"));
+    EXPECT_TRUE(moved(1, 10)->warnings.empty());
+    EXPECT_TRUE(moved(1e9, 0).ok());
+
+    Mesh point = shapes::torus(2, 1, 16, 8);
+    for (Vec3& p : point.positions) p = Vec3(1, 2, 3);
+    EXPECT_FALSE(encodeMesh(point, forBytes(2000, 33)).ok());
+}
+
 TEST(EncodeTiny, ATetrahedronAndATriangleWork)
 {
     Mesh tetrahedron;

@@ -79,6 +79,9 @@ TEST_F(Gimenc, ExitCodesTellRefusedUsageAndUnreachableApart)
     EXPECT_EQ(gimenc("--raw 13" + sphere + out).code, 2);
     EXPECT_EQ(gimenc("--bytes 2000 --grid 100" + sphere + out).code, 2);
     EXPECT_EQ(gimenc("--bytes 2000 --threads x" + sphere + out).code, 2);
+    EXPECT_EQ(gimenc("--bytes 2000 --normals 65537" + sphere + out).code, 2);
+    EXPECT_EQ(gimenc("--bytes 2000" + sphere + sphere).code, 2); // onto itself
+    EXPECT_EQ(run(GIMDEC_PATH, "/tmp" + file("x.ply")).code, 1); // a folder
     EXPECT_EQ(gimenc("--bytes 10 --grid 65" + sphere + out).code, 3);
     EXPECT_EQ(gimenc("--psnr 150 --grid 33" + sphere + out).code, 3);
     const Ended unwritable = gimenc("--bytes 2000 --grid 33" + sphere + " /nonexistent/out.gim");
