@@ -10,7 +10,10 @@ std::vector<std::string> warnings(const RepairReport& report)
 {
     std::vector<std::string> lines;
     const auto say = [&lines](int64_t count, const char* one, const char* many, const std::string& what) {
-        if (count > 0) lines.push_back(std::to_string(count) + " " + (count == 1 ? one : many) + " " + what);
+        if (count <= 0) return;
+        std::string& line = lines.emplace_back();
+        line += std::to_string(count);
+        line.append(" ").append(count == 1 ? one : many).append(" ").append(what);
     };
     if (report.lastLineOpen) lines.push_back("the last line has no end: the file may have been cut short");
     say(report.trailingBytes, "byte", "bytes", "after the end of the data ignored");

@@ -1,0 +1,112 @@
+// What the targets promise: bytes, decibels, exact samples. Slow under sanitizers.
+#include "encoding.h"
+
+#include "corpus/shapes.h"
+
+#include <gmock/gmock.h>
+
+#include <cmath>
+
+namespace gimg {
+namespace {
+
+using namespace test;
+
+TEST(EncodeBytes, NeverOverAndAtMostOnePercentOr24Under)
+{
+    const Mesh mesh = shapes::wavySphere(1, 0.3, 5, 24);
+    double last = 0;
+    for (size_t bytes : {300, 1000, 3000}) {
+        const EncodedMesh encoded = encode(mesh, forBytes(bytes, 129));
+        EXPECT_LE(encoded.file.size(), bytes);
+        EXPECT_GE(encoded.file.size() + std::max<size_t>(24, bytes / 100), bytes);
+        EXPECT_GT(encoded.psnr, last + 3); // more bytes, a better surface
+        last = encoded.psnr;
+    }
+    EXPECT_GT(last, 68);
+    const EncodedMesh large = encode(mesh, forBytes(40000, 129));
+    EXPECT_LE(large.file.size(), 40000u);
+    EXPECT_GE(large.file.size(), 39600u);
+}
+
+TEST(EncodeBytes, ATargetBelowTheSmallestFileSaysWhatCanBeHad)
+{
+    const Result<EncodedMesh> encoded = encodeMesh(shapes::sphere(1, 8), forBytes(20, 65));
+    ASSERT_FALSE(encoded.ok());
+    EXPECT_EQ(encoded.error().kind, ErrorKind::TargetUnreachable);
+    EXPECT_THAT(encoded.error().message, testing::ContainsRegex("[0-9]+ bytes"));
+}
+
+TEST(EncodePsnr, IsMetWithinHalfADecibel)
+{
+    const Mesh mesh = shapes::torus(3, 1, 96, 48);
+    EncodeOptions options = forTarget(EncodeTarget::Psnr, 129);
+    for (double psnr : {45.0, 58.0}) {
+        options.psnr = psnr;
+        const EncodedMesh encoded = encode(mesh, options);
+        EXPECT_GE(encoded.psnr, psnr);
+        EXPECT_LE(encoded.psnr, psnr + 0.5);
+        EXPECT_NEAR(encoded.psnr, psnrOf(mesh, decodedLevel(encoded, 0)), 1e-9);
+    }
+}
+
+TEST(EncodePsnr, ATargetAboveTheGridSaysWhatItHolds)
+{
+    EncodeOptions options = forTarget(EncodeTarget::Psnr, 33);
+    options.psnr = 100;
+    const Result<EncodedMesh> encoded = encodeMesh(shapes::torus(3, 1, 64, 32), options);
+    ASSERT_FALSE(encoded.ok());
+    EXPECT_EQ(encoded.error().kind, ErrorKind::TargetUnreachable);
+    EXPECT_THAT(encoded.error().message, testing::HasSubstr("larger --grid"));
+}
+
+TEST(EncodeRaw, FloatIsBetterThan12BitsAndBothCloseToTheSurface)
+{
+    const Mesh mesh = shapes::torus(3, 1, 96, 48);
+    const EncodedMesh exact = encode(mesh, forTarget(EncodeTarget::RawFloat, 129));
+    const EncodedMesh integers = encode(mesh, forTarget(EncodeTarget::Raw12, 129));
+    EXPECT_GT(exact.psnr, integers.psnr);
+    EXPECT_GT(integers.psnr, 60);
+    EXPECT_GT(exact.file.size(), integers.file.size());
+    // 12 bits over a cube of side 8: at most half a step off, 8 / 4095 / 2 a coordinate.
+    const Mesh a = decodedLevel(exact, 0), b = decodedLevel(integers, 0);
+    ASSERT_EQ(a.vertexCount(), b.vertexCount());
+    for (int v = 0; v < a.vertexCount(); ++v)
+        EXPECT_LE((a.positions[v] - b.positions[v]).cwiseAbs().maxCoeff(), 0.5 * 8 / 4095 * 1.0001);
+}
+
+TEST(EncodeRaw, FinerGridsConvergeQuadratically)
+{
+    // Linear interpolation of a smooth surface: the error falls by 4, 12 dB, when the grid doubles; the
+    // facets of the reference bound it from below.
+    const Mesh mesh = shapes::torus(3, 1, 192, 96);
+    const double coarse = encode(mesh, forTarget(EncodeTarget::RawFloat, 33)).psnr;
+    const double fine = encode(mesh, forTarget(EncodeTarget::RawFloat, 65)).psnr;
+    EXPECT_GT(fine, coarse + 9.5);
+    EXPECT_LT(fine, coarse + 14);
+}
+
+TEST(EncodeNormals, AreDecodedAtTheirOwnResolution)
+{
+    EncodeOptions options = forBytes(8000, 65);
+    options.normals = 129;
+    const EncodedMesh encoded = encode(shapes::sphere(1, 24), options);
+    EXPECT_LE(encoded.file.size(), 8000u);
+    const Result<DecodedImages> images = decodeImages(encoded.file);
+    ASSERT_TRUE(images.ok());
+    ASSERT_EQ(images->normals.width, 129);
+    // The sphere's normals are its points.
+    double worst = 1;
+    for (int j = 0; j < 65; ++j)
+        for (int i = 0; i < 65; ++i) {
+            Vec3 p, n;
+            for (int k = 0; k < 3; ++k)
+                p[k] = images->geometry.at(i, j, k), n[k] = images->normals.at(2 * i, 2 * j, k);
+            EXPECT_NEAR(n.norm(), 1, 1e-6);
+            worst = std::min(worst, n.dot(p) / p.norm());
+        }
+    EXPECT_GT(worst, std::cos(5 * M_PI / 180));
+}
+
+} // namespace
+} // namespace gimg
