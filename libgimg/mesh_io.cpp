@@ -15,7 +15,7 @@ std::vector<std::string> warnings(const RepairReport& report)
         line += std::to_string(count);
         line.append(" ").append(count == 1 ? one : many).append(" ").append(what);
     };
-    if (report.lastLineOpen) lines.push_back("the last line has no end: the file may have been cut short");
+    if (report.lastLineOpen) lines.emplace_back("the last line has no end: the file may have been cut short");
     say(report.trailingBytes, "byte", "bytes", "after the end of the data ignored");
     say(report.polygonsSplit, "polygon", "polygons", "split into triangles");
     say(report.weldedVertices, "vertex", "vertices", "welded to an earlier one at the same position");
