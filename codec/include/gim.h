@@ -174,7 +174,9 @@ GIM_API gim_status gim_mesh_size(const void* bytes, size_t size, const gim_limit
  * sample_of_vertex  receives counts.vertices entries: a vertex's sample, numbered in the *finest* grid,
  *                   so that a vertex stands at xyz[3 * sample_of_vertex[v]]
  * triangles         receives 3 * counts.triangles vertex numbers, counter-clockwise in (s, t)
- * Any of the three may be NULL if it is not wanted. */
+ * Any of the three may be NULL if it is not wanted.
+ * Numbers are always in range. A file of a conforming encoder gives a manifold; one that was forged, checksums
+ * and all, may not (SPEC.md, section 7). */
 GIM_API gim_status gim_build_mesh(const void* bytes, size_t size, const gim_limits* limits, uint32_t flags,
                                   uint32_t level, void* workspace, size_t workspace_size, const float* xyz,
                                   uint32_t* vertex_of_sample, uint32_t* sample_of_vertex, uint32_t* triangles);
