@@ -1,5 +1,6 @@
 #include "gimg/sample.h"
 
+#include "codec/border.h"
 #include "stretch_element.h"
 
 #include <algorithm>
@@ -60,22 +61,6 @@ void rasterize(const std::array<Vec2, 3>& corner, const std::array<Vec3, 3>& val
         }
 }
 
-// Grid point at border position k, counter-clockwise from (0,0).
-std::pair<int, int> borderPoint(int k, int n)
-{
-    const int side = n - 1, along = k % side;
-    switch (k / side % 4) {
-    case 0:
-        return {along, 0};
-    case 1:
-        return {side, along};
-    case 2:
-        return {side - along, side};
-    default:
-        return {0, side - along};
-    }
-}
-
 // Value at parameter u of a path, always computed in the path's own direction.
 Vec3 alongPath(const CutPath& path, const std::vector<double>& parameter,
                const std::vector<Vec3>& surfaceValue, double u)
@@ -100,8 +85,8 @@ void sampleBorder(const SquareDisk& square, const std::vector<Vec3>& surfaceValu
         const int length = square.pathLength[side.path] * ratio;
         for (int k = 0; k <= length; ++k) {
             const double u = static_cast<double>(side.reversed ? length - k : k) / ratio;
-            const auto [i, j] = borderPoint((begin + k) % perimeter, image.n);
-            const size_t at = image.index(i, j);
+            const size_t at = codec::borderSample(static_cast<uint32_t>(image.n),
+                                                  static_cast<uint32_t>((begin + k) % perimeter));
             image.inside[at] = 1;
             image.value[at] =
                 alongPath(square.cut.paths[side.path], square.pathParameter[side.path], surfaceValue, u);
