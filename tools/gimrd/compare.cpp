@@ -1,27 +1,27 @@
-// gimrd: measures how far surfaces are apart.
-#include "cli.h"
+#include "command.h"
+
+#include "../cli.h"
 
 #include "gimg/distance.h"
 #include "gimg/mesh_io.h"
 
 #include <cmath>
+#include <memory>
 
+namespace gimg::gimrd {
 namespace {
-
-using gimg::SurfaceDistance;
-namespace cli = gimg::cli;
 
 struct CompareOptions
 {
     std::string reference;
     std::string test;
-    gimg::DistanceOptions distance;
+    DistanceOptions distance;
     bool json = false;
 };
 
 bool printJson(const SurfaceDistance& d)
 {
-    const auto point = [](const gimg::Vec3& p) { return nlohmann::ordered_json{p[0], p[1], p[2]}; };
+    const auto point = [](const Vec3& p) { return nlohmann::ordered_json{p[0], p[1], p[2]}; };
     nlohmann::ordered_json object;
     object["diagonal"] = d.diagonal;
     object["rms_ref_to_test"] = d.rmsRefToTest;
@@ -37,7 +37,7 @@ bool printJson(const SurfaceDistance& d)
 
 bool printText(const SurfaceDistance& d)
 {
-    const auto at = [](const gimg::Vec3& p) { std::printf("   at (%.6g, %.6g, %.6g)\n", p[0], p[1], p[2]); };
+    const auto at = [](const Vec3& p) { std::printf("   at (%.6g, %.6g, %.6g)\n", p[0], p[1], p[2]); };
     std::printf("diagonal          %.6g\n", d.diagonal);
     std::printf("rms ref to test   %.6g\n", d.rmsRefToTest);
     std::printf("rms test to ref   %.6g\n", d.rmsTestToRef);
@@ -55,11 +55,11 @@ bool printText(const SurfaceDistance& d)
 
 int compare(const CompareOptions& options)
 {
-    const gimg::Result<gimg::Mesh> reference = gimg::readTriangles(options.reference);
+    const Result<Mesh> reference = readTriangles(options.reference);
     if (!reference) return cli::fail("gimrd", cli::Refused, reference.error().message);
-    const gimg::Result<gimg::Mesh> test = gimg::readTriangles(options.test);
+    const Result<Mesh> test = readTriangles(options.test);
     if (!test) return cli::fail("gimrd", cli::Refused, test.error().message);
-    const gimg::Result<SurfaceDistance> d = gimg::compareSurfaces(*reference, *test, options.distance);
+    const Result<SurfaceDistance> d = compareSurfaces(*reference, *test, options.distance);
     if (!d) return cli::fail("gimrd", cli::Refused, d.error().message);
     const bool printed = options.json ? printJson(*d) : printText(*d);
     return printed ? int{cli::Done} : cli::fail("gimrd", cli::Refused, "cannot write the result");
@@ -67,26 +67,22 @@ int compare(const CompareOptions& options)
 
 } // namespace
 
-int main(int argc, char** argv)
+Command addCompare(CLI::App& app)
 {
-    CLI::App app("Measures surfaces against each other.", "gimrd");
-    app.set_version_flag("--version", GIMG_VERSION);
-    app.require_subcommand(1);
-
-    CompareOptions options;
+    const auto options = std::make_shared<CompareOptions>();
     CLI::App* sub = app.add_subcommand("compare", "Distance between two surfaces, both ways, and PSNR");
-    sub->add_option("REF", options.reference, "Reference mesh (.obj, .ply, .off, .stl)")->required();
-    sub->add_option("TEST", options.test, "Mesh to compare with it; its topology does not matter")
+    sub->add_option("REF", options->reference, "Reference mesh (.obj, .ply, .off, .stl)")->required();
+    sub->add_option("TEST", options->test, "Mesh to compare with it; its topology does not matter")
         ->required();
-    sub->add_option("--samples", options.distance.samples, "Samples on each surface")
+    sub->add_option("--samples", options->distance.samples, "Samples on each surface")
         ->check(CLI::Range(1, 100000000))
         ->capture_default_str();
-    sub->add_option("--seed", options.distance.seed, "Seed of the samples")->capture_default_str();
-    sub->add_option("--threads", options.distance.threads, "Threads; 0 for one a core")
+    sub->add_option("--seed", options->distance.seed, "Seed of the samples")->capture_default_str();
+    sub->add_option("--threads", options->distance.threads, "Threads; 0 for one a core")
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
-    sub->add_flag("--json", options.json, "Print JSON; psnr is null where the surfaces agree");
-
-    if (const std::optional<int> exit = cli::parse(app, argc, argv)) return *exit;
-    return compare(options);
+    sub->add_flag("--json", options->json, "Print JSON; psnr is null where the surfaces agree");
+    return {sub, [options] { return compare(*options); }};
 }
+
+} // namespace gimg::gimrd

@@ -1,0 +1,51 @@
+#pragma once
+
+#include "gimg/result.h"
+
+#include <nlohmann/json.hpp>
+
+#include <cstddef>
+#include <filesystem>
+#include <functional>
+#include <string>
+#include <vector>
+
+namespace gimg::gimrd {
+
+/// A coder that gimrd can run: a program of the adapters' folder, see bench/adapters/README.md.
+struct CoderProgram
+{
+    std::filesystem::path program;
+    std::string name, title, codec;
+    bool takesImage = false; ///< a geometry image instead of the mesh
+    bool ours = false;
+    bool usesGrid = false;
+    std::vector<std::string> packages; ///< what it needs
+    std::vector<std::string> missing;  ///< what of that is not there; empty: it can run
+};
+
+/// Where the adapters are: $GIMRD_ADAPTERS, or else ../libexec/gimg/adapters beside the running program.
+std::filesystem::path adapterFolder();
+
+/// All coders of adapterFolder(), ours first, each side by name.
+/// Errors: FileNotReadable if the folder does not exist; CodecFailure if a program there does not describe
+/// itself.
+Result<std::vector<CoderProgram>> findCoders();
+
+/// What an adapter made for one size.
+struct CodedFile
+{
+    std::size_t target = 0;
+    std::size_t bytes = 0;
+    std::filesystem::path file, decoded;
+    std::string unreachable; ///< why there is no file; empty if there is one
+    nlohmann::ordered_json settings;
+};
+
+/// Runs `encode` of the protocol; `done` is called as each size is finished.
+/// Errors: CodecFailure, with the last line the adapter printed, if it failed or broke the protocol.
+Status encodeWith(const CoderProgram& coder, const std::filesystem::path& input,
+                  const std::filesystem::path& out, const std::vector<std::size_t>& sizes, int grid,
+                  int threads, const std::function<void(const CodedFile&)>& done);
+
+} // namespace gimg::gimrd

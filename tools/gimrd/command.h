@@ -1,0 +1,18 @@
+#pragma once
+
+#include <CLI/CLI.hpp>
+
+#include <functional>
+
+namespace gimg::gimrd {
+
+/// A subcommand and what it does; the result is the exit status of the program.
+struct Command
+{
+    CLI::App* parser;
+    std::function<int()> run;
+};
+
+Command addCompare(CLI::App& app);
+
+} // namespace gimg::gimrd

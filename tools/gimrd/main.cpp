@@ -1,0 +1,18 @@
+// gimrd: measures how far surfaces are apart, and rate against distortion.
+#include "command.h"
+
+#include "../cli.h"
+
+int main(int argc, char** argv)
+{
+    using namespace gimg::gimrd;
+    CLI::App app("Measures surfaces against each other, and rate against distortion.", "gimrd");
+    app.set_version_flag("--version", GIMG_VERSION);
+    app.require_subcommand(1);
+    const Command commands[] = {addCompare(app)};
+
+    if (const std::optional<int> exit = gimg::cli::parse(app, argc, argv)) return *exit;
+    for (const Command& command : commands)
+        if (command.parser->parsed()) return command.run();
+    return gimg::cli::Usage;
+}
