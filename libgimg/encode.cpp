@@ -14,6 +14,7 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <memory>
 #include <optional>
 
 namespace gimg {
@@ -75,8 +76,9 @@ constexpr float kNormalStep = 1.0f / 32;
 class PsnrSearch
 {
 public:
-    PsnrSearch(const codec::Encoder& encoder, const SurfaceMeasure& measure, const EncodeOptions& options)
-        : encoder_(encoder), measure_(measure), options_(options)
+    PsnrSearch(const codec::Encoder& encoder, const SurfaceMeasure& measure, double psnr,
+               const EncodeProgress& progress)
+        : encoder_(encoder), measure_(measure), psnr_(psnr), progress_(progress)
     {
     }
 
@@ -88,18 +90,17 @@ public:
         double fine = std::log(kFinest), coarse = std::log(kCoarsest);
         Result<Trial> kept = attempt(fine);
         if (!kept) return kept.error();
-        if (kept->psnr < options_.psnr)
+        if (kept->psnr < psnr_)
             return Error{ErrorKind::TargetUnreachable,
-                         decibels(options_.psnr) + " cannot be reached: this grid holds the surface to " +
+                         decibels(psnr_) + " cannot be reached: this grid holds the surface to " +
                              decibels(kept->psnr) + "; use a larger --grid"};
-        double next = -options_.psnr / 20 * std::log(10.0);
-        for (int i = 0; i < kMostSteps && kept->psnr > options_.psnr + 2 * kAim && coarse - fine > 1e-6;
-             ++i) {
+        double next = -psnr_ / 20 * std::log(10.0);
+        for (int i = 0; i < kMostSteps && kept->psnr > psnr_ + 2 * kAim && coarse - fine > 1e-6; ++i) {
             if (!(next > fine && next < coarse)) next = 0.5 * (fine + coarse);
             Result<Trial> trial = attempt(next);
             if (!trial) return trial.error();
-            if (options_.progress) options_.progress("code", (i + 1.0) / kMostSteps);
-            const double excess = trial->psnr - options_.psnr;
+            if (progress_) progress_("code", (i + 1.0) / kMostSteps);
+            const double excess = trial->psnr - psnr_;
             if (excess >= 0) {
                 fine = next;
                 kept = std::move(*trial);
@@ -108,9 +109,8 @@ public:
             }
             next += (excess - kAim) / 5 * std::log(2.0);
         }
-        if (kept->psnr > options_.psnr + kWindow)
-            return Error{ErrorKind::TargetUnreachable, "no file is within 0.5 dB of " +
-                                                           decibels(options_.psnr) +
+        if (kept->psnr > psnr_ + kWindow)
+            return Error{ErrorKind::TargetUnreachable, "no file is within 0.5 dB of " + decibels(psnr_) +
                                                            "; the nearest above has " + decibels(kept->psnr)};
         return std::move(kept->file);
     }
@@ -136,18 +136,19 @@ private:
 
     const codec::Encoder& encoder_;
     const SurfaceMeasure& measure_;
-    const EncodeOptions& options_;
+    double psnr_;
+    const EncodeProgress& progress_;
 };
 
 Result<std::vector<uint8_t>> code(const codec::Encoder& encoder, const SurfaceMeasure& measure,
-                                  const EncodeOptions& options)
+                                  const EncodeGoal& goal, const EncodeProgress& progress)
 {
     codec::Settings settings;
-    switch (options.target) {
+    switch (goal.target) {
     case EncodeTarget::Bytes:
-        return fileOf(encoder.encodeToBytes(options.bytes));
+        return fileOf(encoder.encodeToBytes(goal.bytes));
     case EncodeTarget::Psnr:
-        return PsnrSearch(encoder, measure, options).run();
+        return PsnrSearch(encoder, measure, goal.psnr, progress).run();
     case EncodeTarget::Raw12:
         settings.coding = GIM_CODING_RAW12;
         break;
@@ -185,14 +186,40 @@ Status checkScale(const Mesh& mesh, std::vector<std::string>& warnings)
 
 bool isImageSize(int n) { return n >= 3 && n <= BorderOptions::kLargestGrid && ((n - 1) & (n - 2)) == 0; }
 
+// As many threads as asked for while it lives.
+class ThreadLimit
+{
+public:
+    explicit ThreadLimit(int threads)
+    {
+        if (threads > 0)
+            limit_.emplace(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(threads));
+    }
+
+private:
+    std::optional<tbb::global_control> limit_;
+};
+
 } // namespace
 
-Result<EncodedMesh> encodeMesh(const Mesh& mesh, const EncodeOptions& options)
+struct MeshEncoder::Prepared
+{
+    EncodedMesh report; ///< all but what coding adds
+    codec::Encoder encoder;
+    SurfaceMeasure measure;
+    EncodeProgress progress;
+    int threads;
+};
+
+MeshEncoder::MeshEncoder(std::unique_ptr<const Prepared> prepared) : prepared_(std::move(prepared)) {}
+MeshEncoder::~MeshEncoder() = default;
+MeshEncoder::MeshEncoder(MeshEncoder&&) noexcept = default;
+MeshEncoder& MeshEncoder::operator=(MeshEncoder&&) noexcept = default;
+
+Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& options)
 {
     if (options.threads < 0) return Error{ErrorKind::BadArgument, "the number of threads is negative"};
-    std::optional<tbb::global_control> threads;
-    if (options.threads > 0)
-        threads.emplace(tbb::global_control::max_allowed_parallelism, static_cast<size_t>(options.threads));
+    const ThreadLimit limit(options.threads);
     const auto stage = [&](const char* name, double fraction) {
         if (options.progress) options.progress(name, fraction);
     };
@@ -237,7 +264,6 @@ Result<EncodedMesh> encodeMesh(const Mesh& mesh, const EncodeOptions& options)
     out.normals = options.normals;
     out.seconds.sample = watch.lap();
 
-    stage("code", 0);
     codec::Source source;
     source.grid = static_cast<uint32_t>(square->grid);
     source.seam = {static_cast<uint32_t>(square->lowest), static_cast<uint32_t>(square->start),
@@ -245,19 +271,40 @@ Result<EncodedMesh> encodeMesh(const Mesh& mesh, const EncodeOptions& options)
     source.xyz = geometry->samples;
     source.normalGrid = static_cast<uint32_t>(options.normals);
     source.normals = normals->samples;
-    auto prepared = codec::Encoder::prepare(source);
-    if (auto* error = std::get_if<codec::EncodeError>(&prepared)) return fromCodec(*error);
-    const SurfaceMeasure measure(mesh);
-    Result<std::vector<uint8_t>> file = code(std::get<codec::Encoder>(prepared), measure, options);
+    auto encoder = codec::Encoder::prepare(source);
+    if (auto* error = std::get_if<codec::EncodeError>(&encoder)) return fromCodec(*error);
+    SurfaceMeasure measure(mesh);
+    out.seconds.code = watch.lap();
+    return MeshEncoder(std::make_unique<const Prepared>(
+        Prepared{std::move(out), std::move(std::get<codec::Encoder>(encoder)), std::move(measure),
+                 options.progress, options.threads}));
+}
+
+Result<EncodedMesh> MeshEncoder::encode(const EncodeGoal& goal) const
+{
+    const ThreadLimit limit(prepared_->threads);
+    if (prepared_->progress) prepared_->progress("code", 0);
+    Stopwatch watch;
+    Result<std::vector<uint8_t>> file =
+        code(prepared_->encoder, prepared_->measure, goal, prepared_->progress);
     if (!file) return file.error();
-    out.file = std::move(*file);
-    const Result<double> psnr = decodedPsnr(out.file, measure);
+    const Result<double> psnr = decodedPsnr(*file, prepared_->measure);
     if (!psnr) return psnr.error();
+
+    EncodedMesh out = prepared_->report;
+    out.file = std::move(*file);
     out.psnr = *psnr;
     if (out.psnr == 0)
         out.warnings.push_back("the decoded surface has hardly any area: its PSNR counts as 0 dB");
-    out.seconds.code = watch.lap();
+    out.seconds.code += watch.lap();
     return out;
+}
+
+Result<EncodedMesh> encodeMesh(const Mesh& mesh, const EncodeOptions& options)
+{
+    const Result<MeshEncoder> encoder = MeshEncoder::prepare(mesh, options);
+    if (!encoder) return encoder.error();
+    return encoder->encode(options);
 }
 
 } // namespace gimg

@@ -26,23 +26,23 @@ protected:
     {
         Result<MeshFile> read = readMesh(bunnyPath());
         ASSERT_TRUE(read.ok()) << read.error().message << " (corpus/fetch bunny brings it)";
-        mesh_ = new Mesh(std::move(read->mesh));
+        Result<MeshEncoder> prepared = MeshEncoder::prepare(read->mesh, {});
+        ASSERT_TRUE(prepared.ok()) << prepared.error().message;
+        encoder_ = new MeshEncoder(std::move(*prepared));
     }
     static void TearDownTestSuite()
     {
-        delete mesh_;
-        mesh_ = nullptr;
+        delete encoder_;
+        encoder_ = nullptr;
     }
-    static Mesh* mesh_;
+    static MeshEncoder* encoder_;
 };
-Mesh* Bunny::mesh_ = nullptr;
+MeshEncoder* Bunny::encoder_ = nullptr;
 
 TEST_F(Bunny, FitsInFewKilobytes)
 {
-    ASSERT_NE(mesh_, nullptr);
-    EncodeOptions options;
-    options.bytes = 12000;
-    const Result<EncodedMesh> encoded = encodeMesh(*mesh_, options);
+    ASSERT_NE(encoder_, nullptr);
+    const Result<EncodedMesh> encoded = encoder_->encode({EncodeTarget::Bytes, 12000});
     ASSERT_TRUE(encoded.ok()) << encoded.error().message;
     EXPECT_LE(encoded->file.size(), 12000u);
     EXPECT_GE(encoded->file.size(), 11880u);
@@ -63,14 +63,11 @@ TEST_F(Bunny, FitsInFewKilobytes)
 
 TEST_F(Bunny, ThreeKilobytesAndNoLossAtAll)
 {
-    ASSERT_NE(mesh_, nullptr);
-    EncodeOptions options;
-    options.bytes = 3000;
-    const Result<EncodedMesh> small = encodeMesh(*mesh_, options);
+    ASSERT_NE(encoder_, nullptr);
+    const Result<EncodedMesh> small = encoder_->encode({EncodeTarget::Bytes, 3000});
     ASSERT_TRUE(small.ok());
     EXPECT_GT(small->psnr, 57);
-    options.target = EncodeTarget::RawFloat;
-    const Result<EncodedMesh> raw = encodeMesh(*mesh_, options);
+    const Result<EncodedMesh> raw = encoder_->encode({EncodeTarget::RawFloat});
     ASSERT_TRUE(raw.ok());
     EXPECT_GT(raw->psnr, 74.5);
 }

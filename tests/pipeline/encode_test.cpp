@@ -21,6 +21,27 @@ TEST(EncodeThreads, FileDoesNotDependOnThem)
     EXPECT_EQ(one.file, two.file);
 }
 
+TEST(MeshEncoder, OnePreparationServesEveryGoalAsEncodeMeshDoes)
+{
+    const Mesh mesh = shapes::surfaceOfGenus(2, 1, 8);
+    const Result<MeshEncoder> encoder = MeshEncoder::prepare(mesh, forBytes(1, 65));
+    ASSERT_TRUE(encoder.ok()) << encoder.error().message;
+    EncodeOptions options = forBytes(2500, 65);
+    for (EncodeTarget target : {EncodeTarget::Bytes, EncodeTarget::Raw12, EncodeTarget::RawFloat}) {
+        options.target = target;
+        const Result<EncodedMesh> again = encoder->encode(options);
+        ASSERT_TRUE(again.ok()) << again.error().message;
+        const EncodedMesh once = encode(mesh, options);
+        EXPECT_EQ(again->file, once.file);
+        EXPECT_EQ(again->psnr, once.psnr);
+    }
+    options.target = EncodeTarget::Bytes;
+    options.bytes = 10;
+    const Result<EncodedMesh> tooSmall = encoder->encode(options);
+    ASSERT_FALSE(tooSmall.ok());
+    EXPECT_EQ(tooSmall.error().kind, ErrorKind::TargetUnreachable);
+}
+
 TEST(EncodeScale, LargeOffsetsKeepTheirPrecision)
 {
     // A survey's coordinates: millions of metres away, detail of a metre.

@@ -6,6 +6,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <functional>
+#include <memory>
 #include <string>
 #include <vector>
 
@@ -20,17 +21,23 @@ enum class EncodeTarget
     RawFloat, ///< float32 samples without loss
 };
 
-struct EncodeOptions
+/// Called with the name of the stage and the fraction of it that is done.
+using EncodeProgress = std::function<void(const char* stage, double fraction)>;
+
+struct EncodeGoal
 {
     EncodeTarget target = EncodeTarget::Bytes;
     size_t bytes = 12000; ///< size of the whole file
     double psnr = 70;     ///< surface PSNR in dB, see SurfaceDistance::psnr
-    int grid = 0;         ///< samples a side, 2^j + 1; 0 chooses, see BorderOptions
-    int lowest = 0;       ///< lowest level of detail; 0 chooses
-    int normals = 0;      ///< samples a side of the normal image, 2^j + 1; 0: none
-    int threads = 0;      ///< 0: one a core. The file does not depend on it.
-    /// Called with the name of the stage and the fraction of it that is done.
-    std::function<void(const char* stage, double fraction)> progress;
+};
+
+struct EncodeOptions : EncodeGoal
+{
+    int grid = 0;    ///< samples a side, 2^j + 1; 0 chooses, see BorderOptions
+    int lowest = 0;  ///< lowest level of detail; 0 chooses
+    int normals = 0; ///< samples a side of the normal image, 2^j + 1; 0: none
+    int threads = 0; ///< 0: one a core. The file does not depend on it.
+    EncodeProgress progress;
 };
 
 struct EncodeSeconds
@@ -45,7 +52,8 @@ struct EncodedMesh
     int grid = 0;
     int lowest = 0;
     int normals = 0;
-    double psnr = 0;              ///< of the decoded finest level against the input; infinite if they agree, 0 if nothing is left
+    double psnr =
+        0; ///< of the decoded finest level against the input; infinite if they agree, 0 if nothing is left
     double stretchEfficiency = 0; ///< see stretchEfficiency()
     int cutNodes = 0;
     int cutPaths = 0;
@@ -58,5 +66,25 @@ struct EncodedMesh
 /// @param mesh  connected, manifold, oriented (see readMesh)
 /// Errors: BadArgument; TargetUnreachable (says what can be reached); those of the stages.
 Result<EncodedMesh> encodeMesh(const Mesh& mesh, const EncodeOptions& options);
+
+/// A mesh that is cut, flattened and sampled once, for as many goals as are asked for.
+class MeshEncoder
+{
+public:
+    /// @param mesh  as for encodeMesh; not needed any more afterwards
+    /// The goal in `options` does not matter here. Errors: BadArgument; those of the stages.
+    static Result<MeshEncoder> prepare(const Mesh& mesh, const EncodeOptions& options);
+    ~MeshEncoder();
+    MeshEncoder(MeshEncoder&&) noexcept;
+    MeshEncoder& operator=(MeshEncoder&&) noexcept;
+
+    /// The same file that encodeMesh makes. Errors: BadArgument, TargetUnreachable.
+    Result<EncodedMesh> encode(const EncodeGoal& goal) const;
+
+private:
+    struct Prepared;
+    explicit MeshEncoder(std::unique_ptr<const Prepared> prepared);
+    std::unique_ptr<const Prepared> prepared_;
+};
 
 } // namespace gimg
