@@ -125,6 +125,7 @@ struct OneSided
     double rms = 0;
     double max = 0;
     Vec3 maxAt = Vec3::Zero();
+    double quantile = 0;
     std::optional<NormalError> normals;
 };
 
@@ -148,6 +149,15 @@ std::optional<NormalError> meanAngle(const std::vector<double>& angles)
     if (count == 0) return std::nullopt;
     return NormalError{std::sqrt(sumOfSquares / static_cast<double>(count)),
                        sum / static_cast<double>(count)};
+}
+
+/// The smallest value that is not exceeded by the part `q` of all values.
+double quantile(std::vector<double> values, double q)
+{
+    const double rank = std::ceil(q * static_cast<double>(values.size()));
+    const auto at = values.begin() + static_cast<std::ptrdiff_t>(std::max(rank, 1.0)) - 1;
+    std::nth_element(values.begin(), at, values.end());
+    return *at;
 }
 
 OneSided distances(const Surface& from, const Surface& to, const DistanceOptions& options)
@@ -175,8 +185,14 @@ OneSided distances(const Surface& from, const Surface& to, const DistanceOptions
     double sum = 0;
     for (int i = 0; i < options.samples; ++i) sum += distance[i] * distance[i];
     const auto farthest = std::max_element(distance.begin(), distance.end());
-    return {std::sqrt(sum / options.samples), *farthest,
-            points[static_cast<size_t>(farthest - distance.begin())], meanAngle(angle)};
+    OneSided result;
+    result.rms = std::sqrt(sum / options.samples);
+    result.max = *farthest;
+    result.maxAt = points[static_cast<size_t>(farthest - distance.begin())];
+    result.normals = meanAngle(angle);
+    if (options.quantile > 0)
+        result.quantile = quantile({distance.begin(), distance.begin() + options.samples}, options.quantile);
+    return result;
 }
 
 } // namespace
@@ -193,6 +209,8 @@ struct SurfaceMeasure::Reference
         : options(o), error(objectionToTriangles(mesh, "the reference mesh"))
     {
         if (options.samples < 1) error = Error{ErrorKind::BadArgument, "no samples"};
+        if (!(options.quantile >= 0 && options.quantile <= 1))
+            error = Error{ErrorKind::BadArgument, "a quantile lies between 0 and 1"};
         if (error) return;
         try {
             build(mesh);
@@ -238,6 +256,8 @@ try {
     d.rmsTestToRef = back.rms * unit;
     d.maxTestToRef = back.max * unit;
     d.maxTestToRefAt = ref.frame->outside(back.maxAt);
+    d.quantileRefToTest = forth.quantile * unit;
+    d.quantileTestToRef = back.quantile * unit;
     d.normalsRefToTest = forth.normals;
     d.normalsTestToRef = back.normals;
     return d;

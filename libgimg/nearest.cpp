@@ -22,6 +22,8 @@ struct NearestSurface::Parts
     {
         tree.makeNormals();
     }
+
+    int faceOr0(int face) const;
 };
 
 NearestSurface::NearestSurface(std::unique_ptr<const Parts> parts) : parts_(std::move(parts)) {}
@@ -39,11 +41,16 @@ try {
     return Error{ErrorKind::BadArgument, failure.what()};
 }
 
+int NearestSurface::Parts::faceOr0(int face) const
+{
+    return face >= 0 && static_cast<size_t>(face) < tree.faces().size() ? face : 0;
+}
+
 NearestPoint NearestSurface::to(const Vec3& q, int near) const
 {
     const auto& [frame, tree] = *parts_;
     const Vec3 inside = frame.inside(q);
-    const NearestTree::Found found = tree.nearest(inside, near);
+    const NearestTree::Found found = tree.nearest(inside, parts_->faceOr0(near));
     NearestPoint nearest;
     nearest.face = found.face;
     nearest.barycentric = tree.nearestOnFace(inside, found.face);
@@ -54,7 +61,7 @@ NearestPoint NearestSurface::to(const Vec3& q, int near) const
 
 Vec3 NearestSurface::normalNearest(const Vec3& q, int near) const
 {
-    NearestTree::Found found{near, 0};
+    NearestTree::Found found{parts_->faceOr0(near), 0};
     return parts_->tree.nearestNormal(parts_->frame.inside(q), found);
 }
 

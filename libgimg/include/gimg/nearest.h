@@ -33,7 +33,7 @@ public:
 
     /// Of faces at the same distance the first is given.
     /// @param q     finite, at most 1e9 times the mesh's size away
-    /// @param near  any face; the answer to a query close by saves time and changes nothing
+    /// @param near  a guess: the face that a query close by gave saves time; no guess changes the answer
     NearestPoint to(const Vec3& q, int near = 0) const;
 
     /// The unit normal at the point nearest to q, as DistanceOptions::normals compares it; zero where there
