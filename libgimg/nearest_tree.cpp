@@ -12,7 +12,7 @@ namespace {
 constexpr double kLargestCoordinate = 1e9;  // in units of the frame: beyond, floats cull nothing
 constexpr double kRoundingDistance = 1e-14; // samples of a triangle lie this far off it
 constexpr double kOnePoint = 1e-12;         // so near, two nearest points are one
-constexpr double kSliverSine2 = 1e-20;      // below, a normal is mostly rounding
+constexpr double kSliverSine2 = 1e-16;      // below, rounding turns a normal more than the triangle is wide
 constexpr double kNoNormal = 1e-9;          // of all weights: normals that cancel leave rounding
 
 bool hasNormal(const Vec3& n, const Vec3& ab, const Vec3& ac)

@@ -8,6 +8,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <memory>
 #include <optional>
 
@@ -24,8 +25,18 @@ struct CompareOptions
     std::optional<double> percent; ///< of the diagonal, the top of the heatmap's scale
 };
 
-/// What is left for the top of the scale: a few outliers should not paint all the rest in one colour.
+/// Left out of the scale: a few outliers should not paint all the rest in one colour.
 constexpr double kTopQuantile = 0.999;
+
+/// The next number that reads well on a scale with four intervals.
+double roundedUp(double x)
+{
+    if (!(x > 0)) return 0;
+    const double unit = std::pow(10, std::floor(std::log10(x)));
+    for (double step : {1.0, 1.2, 1.6, 2.0, 2.4, 3.2, 4.0, 5.0, 6.0, 8.0})
+        if (x <= step * unit) return step * unit;
+    return 10 * unit;
+}
 
 /// Zero where no heatmap was asked for.
 double topOfScale(const CompareOptions& options, const SurfaceDistance& d)
@@ -33,7 +44,7 @@ double topOfScale(const CompareOptions& options, const SurfaceDistance& d)
     if (options.heatmap.empty()) return 0;
     if (options.percent) return *options.percent / 100 * d.diagonal;
     const double top = std::max(d.quantileRefToTest, d.quantileTestToRef);
-    return top > 0 ? top : d.hausdorff();
+    return roundedUp(100 * (top > 0 ? top : d.hausdorff()) / d.diagonal) / 100 * d.diagonal;
 }
 
 bool printJson(const SurfaceDistance& d, const CompareOptions& options)
@@ -105,6 +116,10 @@ int compare(const CompareOptions& options)
     if (!reference) return cli::fail("gimrd", cli::Refused, reference.error().message);
     const Result<Mesh> test = readTriangles(options.test);
     if (!test) return cli::fail("gimrd", cli::Refused, test.error().message);
+    std::error_code ignored;
+    for (const std::string& input : {options.reference, options.test})
+        if (std::filesystem::equivalent(input, options.heatmap, ignored))
+            return cli::fail("gimrd", cli::Usage, options.heatmap + ": is an input itself");
     DistanceOptions distance = options.distance;
     distance.normals = true;
     if (!options.heatmap.empty()) distance.quantile = kTopQuantile;
