@@ -12,6 +12,7 @@
 #include <csetjmp>
 #include <cstdint>
 #include <cstdio>
+#include <cstdlib>
 #include <exception>
 #include <filesystem>
 #include <limits>
@@ -28,7 +29,7 @@ Error failure(ErrorKind kind, const std::string& path, const std::string& what)
     return {kind, path + ": " + what};
 }
 
-Status checkedSize(const FloatImage& image, const std::string& path)
+template <class Image> Status checkedSize(const Image& image, const std::string& path)
 {
     if (image.width < 1 || image.height < 1 || image.width > kLargestSide || image.height > kLargestSide)
         return failure(ErrorKind::BadArgument, path,
@@ -150,6 +151,31 @@ Status writeNormalPng(const FloatImage& normals, const std::string& path)
 {
     if (const Status status = checkedForPng(normals, path); !status) return status;
     return writePng(normals, path, 8, [](int, double value) { return (value + 1) / 2; });
+}
+
+Result<std::vector<uint8_t>> pngBytes(const RgbImage& image)
+try {
+    if (const Status status = checkedSize(image, "PNG"); !status) return status.error();
+    char* data = nullptr;
+    size_t size = 0;
+    File memory(open_memstream(&data, &size), std::fclose);
+    const bool encoded = memory && encodePng(memory.get(), image.width, image.height, 8, image.samples);
+    const bool closed = memory && std::fclose(memory.release()) == 0; // data and size are known from here
+    const std::unique_ptr<char, void (*)(void*)> owner(data, std::free);
+    if (!encoded || !closed) return failure(ErrorKind::FileNotWritable, "PNG", "out of memory");
+    return std::vector<uint8_t>(data, data + size);
+} catch (const std::exception& e) {
+    return failure(ErrorKind::FileNotWritable, "PNG", e.what());
+}
+
+Status writePng(const RgbImage& image, const std::string& path)
+{
+    if (const Status status = checkedSize(image, path); !status) return status;
+    File file(std::fopen(path.c_str(), "wb"), std::fclose);
+    if (!file || !encodePng(file.get(), image.width, image.height, 8, image.samples) ||
+        std::fclose(file.release()) != 0)
+        return failure(ErrorKind::FileNotWritable, path, "cannot be written");
+    return Done{};
 }
 
 Status writeExr(const FloatImage& image, const std::string& path)

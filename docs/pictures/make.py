@@ -351,7 +351,16 @@ def lines(studio):
     save(row([render(mesh, view, grid=8, seam=True) for view in views]), "lines.png")
 
 
-PICTURES = {f.__name__: f for f in (bunny, levels, rates, seam, genus, lines)}
+def heatmap(studio):
+    """gimrd's own picture of where the bunny is off."""
+    studio.decoded(studio.encoded(studio.bunny, "--bytes", 1500))
+    studio.run("gimrd", "compare", "--heatmap", studio.path("heatmap.png"), studio.bunny, studio.path("decoded.ply"))
+    picture = Image.open(studio.path("heatmap.png")).convert("RGB")
+    # A median cut would leave the rare bright colours of the bar out.
+    save(picture.quantize(256, method=Image.MAXCOVERAGE, dither=Image.NONE), "heatmap.png", colours=0)
+
+
+PICTURES = {f.__name__: f for f in (bunny, levels, rates, seam, genus, lines, heatmap)}
 
 
 def main():

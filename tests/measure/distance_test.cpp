@@ -4,7 +4,9 @@
 #include <gmock/gmock.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
+#include <numbers>
 #include <random>
 
 using namespace gimg;
@@ -106,6 +108,30 @@ TEST(SurfaceDistance, OfASquareAndItsHalfIsOneSided)
     EXPECT_NEAR(swapped.diagonal, std::sqrt(1.25), 1e-15);
 }
 
+/// The root mean square of f over the unit sphere, f a function of the height z = cos(theta).
+template <class F> double rmsOverSphere(F f)
+{
+    constexpr int kSlices = 20000; // of equal area, by Archimedes
+    double sum = 0;
+    for (int i = 0; i < kSlices; ++i) sum += std::pow(f(-1 + (2 * i + 1.0) / kSlices), 2);
+    return std::sqrt(sum / kSlices);
+}
+
+// The point of the unit sphere at height z is |sqrt(1 + d^2 - 2 d z) - 1| from the one shifted up by d.
+TEST(SurfaceDistance, OfAShiftedSphereIsTheIntegral)
+{
+    for (double shift : {0.05, 0.4}) {
+        const double expected =
+            rmsOverSphere([shift](double z) { return std::sqrt(1 + shift * shift - 2 * shift * z) - 1; });
+        const SurfaceDistance d =
+            compare(test::sphere(1, 6), moved(test::sphere(1, 6), {0, 0, shift}), {.samples = 50000});
+        EXPECT_NEAR(d.rmsRefToTest, expected, 0.01 * expected);
+        EXPECT_NEAR(d.rmsTestToRef, expected, 0.01 * expected);
+        EXPECT_NEAR(d.hausdorff(), shift, 0.01 * shift);
+        EXPECT_NEAR(std::abs(d.maxRefToTestAt[2]), 1, 1e-6);
+    }
+}
+
 TEST(SurfaceDistance, OfASurfaceToItselfIsZero)
 {
     for (const Mesh& mesh :
@@ -172,6 +198,19 @@ TEST(SurfaceDistance, AgreesWithBruteForceOnSampledSurfaces)
     EXPECT_NEAR(compare(b, a).rmsTestToRef, expected, 0.01 * expected);
 }
 
+TEST(SurfaceDistance, QuantilesAreThoseOfTheSamples)
+{
+    Mesh wedge = test::square(1); // at height x, and x is spread evenly
+    for (Vec3& p : wedge.positions) p[2] = p[0];
+    for (double q : {0.001, 0.25, 0.5, 0.999, 1.0}) {
+        const SurfaceDistance d = compare(wedge, test::square(1), {.samples = 100000, .quantile = q});
+        EXPECT_NEAR(d.quantileRefToTest, q, 4e-3) << q;
+        EXPECT_LE(d.quantileRefToTest, d.maxRefToTest);
+    }
+    EXPECT_EQ(compare(wedge, test::square(1)).quantileRefToTest, 0);
+    EXPECT_FALSE(compareSurfaces(wedge, wedge, {.quantile = 1.1}).ok());
+}
+
 TEST(SurfaceDistance, DoesNotDependOnThreads)
 {
     const Mesh a = test::torus(2, 1, 40, 30), b = test::torus(2.02, 0.98, 33, 27);
@@ -204,6 +243,127 @@ TEST(SurfaceDistance, ScalesWithTheUnitAndIgnoresPlace)
     }
     const Vec3 far(1e8, -1e8, 1e8);
     EXPECT_NEAR(compare(moved(a, far), moved(b, far), {.samples = 20000}).psnr(), d.psnr(), 1e-4);
+}
+
+namespace {
+
+SurfaceDistance compareNormals(const Mesh& reference, const Mesh& test)
+{
+    return compare(reference, test, {.samples = 20000, .normals = true});
+}
+
+Mesh inverted(Mesh mesh)
+{
+    for (Triangle& t : mesh.faces) std::swap(t[1], t[2]);
+    return mesh;
+}
+
+Mesh tilted(Mesh mesh, double degrees)
+{
+    const Eigen::AngleAxisd turn(degrees * std::numbers::pi / 180, Vec3::UnitX());
+    for (Vec3& p : mesh.positions) p = turn * p;
+    return mesh;
+}
+
+} // namespace
+
+TEST(NormalError, OfATiltedSquareIsTheAngle)
+{
+    for (double degrees : {1e-6, 0.3, 12.5, 90.0, 135.0, 179.0}) {
+        const SurfaceDistance d = compareNormals(test::square(3), tilted(test::square(5), degrees));
+        for (const auto& error : {d.normalsRefToTest, d.normalsTestToRef}) {
+            ASSERT_TRUE(error);
+            EXPECT_NEAR(error->rms, degrees, 1e-12 * degrees + 1e-13);
+            EXPECT_NEAR(error->mean, degrees, 1e-12 * degrees + 1e-13);
+        }
+        EXPECT_NEAR(*d.normalRms(), degrees, 1e-12 * degrees + 1e-13);
+    }
+}
+
+TEST(NormalError, OfASurfaceToItselfIsZeroAndInsideOut180)
+{
+    for (const Mesh& mesh : {test::sphere(3, 4), test::torus(2, 1, 30, 20), test::band(30, true)}) {
+        const SurfaceDistance same = compareNormals(mesh, mesh);
+        EXPECT_NEAR(*same.normalRms(), 0, 1e-6);
+        const SurfaceDistance other = compareNormals(mesh, inverted(mesh));
+        EXPECT_NEAR(other.normalsRefToTest->mean, 180, 1e-6);
+        EXPECT_NEAR(other.normalsTestToRef->rms, 180, 1e-6);
+        EXPECT_EQ(other.rms(), 0);
+    }
+}
+
+// A point p of the unit sphere and the centre of the one shifted by d span the angle of the normals.
+TEST(NormalError, OfAShiftedSphereIsTheIntegral)
+{
+    for (double shift : {0.2, 0.4}) {
+        const double expected = rmsOverSphere([shift](double z) {
+            return std::atan2(shift * std::sqrt(1 - z * z), 1 - shift * z) * 180 / std::numbers::pi;
+        });
+        const SurfaceDistance d =
+            compareNormals(test::sphere(1, 6), moved(test::sphere(1, 6), {0, 0, shift}));
+        EXPECT_NEAR(d.normalsRefToTest->rms, expected, 0.01 * expected);
+        EXPECT_NEAR(d.normalsTestToRef->rms, expected, 0.01 * expected);
+        EXPECT_EQ(*d.normalRms(), std::max(d.normalsRefToTest->rms, d.normalsTestToRef->rms));
+    }
+}
+
+TEST(NormalError, OfACoarseSphereHalvesWithItsEdges)
+{
+    const Mesh fine = test::sphere(1, 7);
+    double last = *compareNormals(fine, test::sphere(1, 2)).normalRms();
+    EXPECT_LT(last, 15);
+    for (int level : {3, 4, 5}) {
+        const double error = *compareNormals(fine, test::sphere(1, level)).normalRms();
+        EXPECT_NEAR(last / error, 2, 0.15) << level;
+        last = error;
+    }
+}
+
+// A right angle seen from its outside: half of the samples near the edge have it as their nearest point.
+TEST(NormalError, OnAnEdgeBothFacesWeighEqually)
+{
+    // The roof's two slopes fall by 45 degrees; the strip above its ridge faces up.
+    const Mesh roof{{{0, -1, -1}, {1, -1, -1}, {0, 0, 0}, {1, 0, 0}, {0, 1, -1}, {1, 1, -1}},
+                    {{0, 1, 3}, {0, 3, 2}, {2, 3, 5}, {2, 5, 4}}};
+    Mesh strip = test::square(2);
+    for (Vec3& p : strip.positions) p = Vec3(p[0], p[1] - 0.5, 1);
+    EXPECT_NEAR(compareNormals(strip, roof).normalsRefToTest->rms, 0, 1e-12);
+    EXPECT_NEAR(compareNormals(roof, strip).normalsRefToTest->rms, 45, 1e-12);
+}
+
+TEST(NormalError, DoesNotDependOnTheOrderOfFacesOrOnThreads)
+{
+    const Mesh a = test::torus(2, 1, 40, 30), b = randomTriangles(200, 3);
+    Mesh shuffled = b;
+    std::shuffle(shuffled.faces.begin(), shuffled.faces.end(), std::mt19937(5));
+    const SurfaceDistance one = compare(a, b, {.samples = 20000, .threads = 1, .normals = true});
+    EXPECT_NEAR(compare(a, shuffled, {.samples = 20000, .normals = true}).normalsRefToTest->rms,
+                one.normalsRefToTest->rms, 1e-12);
+    for (int threads : {0, 2, 5}) {
+        const SurfaceDistance d = compare(a, b, {.samples = 20000, .threads = threads, .normals = true});
+        EXPECT_EQ(d.normalsRefToTest->rms, one.normalsRefToTest->rms);
+        EXPECT_EQ(d.normalsTestToRef->rms, one.normalsTestToRef->rms);
+        EXPECT_EQ(d.normalsTestToRef->mean, one.normalsTestToRef->mean);
+        EXPECT_EQ(d.rmsRefToTest, one.rmsRefToTest);
+    }
+    const SurfaceDistance without = compare(a, b, {.samples = 20000});
+    EXPECT_EQ(without.rmsRefToTest, one.rmsRefToTest);
+    EXPECT_EQ(without.maxTestToRef, one.maxTestToRef);
+    EXPECT_FALSE(without.normalRms());
+}
+
+TEST(NormalError, IsMissingWhereThereAreNoNormals)
+{
+    const Mesh needle{{{0, 0, 0}, {1, 0, 0}, {0.5, 1e-11, 0}}, {{0, 1, 2}}};
+    const SurfaceDistance d = compareNormals(needle, test::square(2));
+    EXPECT_FALSE(d.normalsRefToTest || d.normalsTestToRef || d.normalRms());
+    // A sheet with two sides has normals where it is sampled, and none together.
+    Mesh sheet = test::square(2);
+    for (const Triangle& t : inverted(sheet).faces) sheet.faces.push_back(t);
+    const SurfaceDistance half = compareNormals(test::square(2), sheet);
+    EXPECT_FALSE(half.normalsRefToTest || half.normalRms());
+    ASSERT_TRUE(half.normalsTestToRef);
+    EXPECT_NEAR(half.normalsTestToRef->mean, 90, 1); // 0 on one side, 180 on the other
 }
 
 TEST(SurfaceMeasure, IsWorthKeeping)

@@ -45,6 +45,20 @@ Status writePng16(const FloatImage& image, const std::string& path);
 /// Errors: as writePng8.
 Status writeNormalPng(const FloatImage& normals, const std::string& path);
 
+/// A picture: 8 bits each of red, green and blue a pixel, the top row first.
+struct RgbImage
+{
+    int width = 0;
+    int height = 0;
+    std::vector<uint8_t> samples; ///< 3 * width * height, row after row
+};
+
+/// The bytes of a PNG file with these pixels; writePng writes them.
+/// Errors: BadArgument (empty, above 32768 x 32768 pixels, or samples that do not fit the size),
+/// FileNotWritable.
+Result<std::vector<uint8_t>> pngBytes(const RgbImage& image);
+Status writePng(const RgbImage& image, const std::string& path);
+
 /// Writes every float as it is, channels R, G, B of type float, without loss.
 /// Errors: BadArgument, FileNotWritable.
 Status writeExr(const FloatImage& image, const std::string& path);
