@@ -11,7 +11,8 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-constexpr int kAttempts = 8;
+constexpr int kAttempts = 6;
+constexpr double kStride = 1.04; ///< between budgets until one fits and one does not
 constexpr std::array kBits = {16, 12};
 
 class OpenJpeg : public Adapter
@@ -62,19 +63,26 @@ public:
     }
 
 private:
-    // The budget is what opj_compress aims at; it is moved by what the file missed the size by.
+    // Sizes go up with the budget in steps of up to 2 %, some of them above it: between a budget that fits
+    // and one that does not there may be a better one.
     Result<std::optional<Bytes>> largestThatFits(const ScaledImage& image, size_t size)
     {
         std::optional<Bytes> best;
-        const auto room = static_cast<double>(size) - static_cast<double>(Cube::kBytes);
+        const double room = static_cast<double>(size) - static_cast<double>(Cube::kBytes);
+        double fits = 0, tooLarge = 0;
         double budget = room;
         for (int i = 0; i < kAttempts && budget > 0; ++i) {
             Result<Bytes> file = compress(image, budget);
             if (!file) return file.error();
-            const double left = room - static_cast<double>(file->size());
-            if (left >= 0 && (!best || file->size() > best->size())) best = std::move(*file);
-            if (left == 0) break;
-            budget += left;
+            const bool fit = static_cast<double>(file->size()) <= room;
+            (fit ? fits : tooLarge) = budget;
+            if (fit && (!best || file->size() > best->size())) best = std::move(*file);
+            if (tooLarge == 0)
+                budget *= kStride;
+            else if (fits == 0)
+                budget /= kStride;
+            else
+                budget = (fits + tooLarge) / 2;
         }
         return best;
     }
