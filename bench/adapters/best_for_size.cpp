@@ -9,7 +9,7 @@
 namespace gimg::adapter {
 namespace {
 
-constexpr int kRoughSamples = 20000, kFineSamples = 200000;
+constexpr int kRoughSamples = 20000, kFineSamples = 100000;
 constexpr std::size_t kFinalists = 3;
 constexpr double kFinalistsMargin = 0.3; ///< dB below the best by which one is no finalist
 constexpr int kDownhill = 2; ///< numbers of bits in a row without a new best before the search turns back
