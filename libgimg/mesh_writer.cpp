@@ -79,9 +79,17 @@ bool exactInFloat(const Mesh& mesh)
                        [](const Vec3& p) { return p == p.cast<float>().cast<double>(); });
 }
 
-void writePly(const Mesh& mesh, std::span<const Vec3> normals, Encoding encoding, Output& out)
+/// What a PLY file holds of each vertex besides its position; an empty list is left out.
+struct VertexProperties
 {
-    const bool isFloat = exactInFloat(mesh);
+    std::span<const Vec3> normals;
+    std::span<const Color> colors;
+    std::span<const double> quality;
+};
+
+void writePlyHeader(const Mesh& mesh, const VertexProperties& vertex, bool isFloat, Encoding encoding,
+                    Output& out)
+{
     out << "ply\nformat "
         << (encoding == Encoding::Ascii    ? "ascii"
             : encoding == Encoding::Binary ? "binary_little_endian"
@@ -89,29 +97,40 @@ void writePly(const Mesh& mesh, std::span<const Vec3> normals, Encoding encoding
         << " 1.0\nelement vertex " << mesh.vertexCount() << "\n";
     for (const char* axis : {"x", "y", "z"})
         out << "property " << (isFloat ? "float " : "double ") << axis << "\n";
-    if (!normals.empty())
+    if (!vertex.normals.empty())
         for (const char* axis : {"nx", "ny", "nz"}) out << "property float " << axis << "\n";
+    if (!vertex.colors.empty())
+        for (const char* channel : {"red", "green", "blue"}) out << "property uchar " << channel << "\n";
+    if (!vertex.quality.empty()) out << "property float quality\n";
     out << "element face " << mesh.faceCount() << "\nproperty list uchar int vertex_indices\nend_header\n";
+}
 
+void writePly(const Mesh& mesh, const VertexProperties& vertex, Encoding encoding, Output& out)
+{
+    const bool isFloat = exactInFloat(mesh);
+    writePlyHeader(mesh, vertex, isFloat, encoding, out);
+    const bool ascii = encoding == Encoding::Ascii;
+    const auto number = [&](auto value) {
+        if (ascii)
+            out << " " << value;
+        else
+            out.binary(value);
+    };
     for (size_t v = 0; v < mesh.positions.size(); ++v) {
-        if (encoding == Encoding::Ascii) {
-            out << mesh.positions[v];
-            if (!normals.empty())
-                for (double x : normals[v]) out << " " << static_cast<float>(x);
-            out << "\n";
-            continue;
-        }
-        for (double x : mesh.positions[v]) {
-            if (isFloat)
-                out.binary(static_cast<float>(x));
-            else
-                out.binary(x);
-        }
-        if (!normals.empty())
-            for (double x : normals[v]) out.binary(static_cast<float>(x));
+        const Vec3& p = mesh.positions[v];
+        if (ascii)
+            out << p;
+        else
+            for (double x : p) isFloat ? out.binary(static_cast<float>(x)) : out.binary(x);
+        if (!vertex.normals.empty())
+            for (double x : vertex.normals[v]) number(static_cast<float>(x));
+        if (!vertex.colors.empty())
+            for (uint8_t x : vertex.colors[v]) ascii ? void(out << " " << int{x}) : out.binary(x, 1);
+        if (!vertex.quality.empty()) number(static_cast<float>(vertex.quality[v]));
+        if (ascii) out << "\n";
     }
     for (const Triangle& t : mesh.faces) {
-        if (encoding == Encoding::Ascii) {
+        if (ascii) {
             out << "3 " << t[0] << " " << t[1] << " " << t[2] << "\n";
             continue;
         }
@@ -177,6 +196,15 @@ Status checked(const Mesh& mesh, MeshFormat format, std::span<const Vec3> normal
     return Done{};
 }
 
+Status save(const Output& out, const std::string& path)
+{
+    std::ofstream file(path, std::ios::binary);
+    file.write(out.bytes().data(), static_cast<std::streamsize>(out.bytes().size()));
+    file.close();
+    if (!file) return Error{ErrorKind::FileNotWritable, path + ": cannot be written"};
+    return Done{};
+}
+
 } // namespace
 
 Status writeMesh(const Mesh& mesh, const std::string& path, std::span<const Vec3> normals, Encoding encoding)
@@ -192,7 +220,7 @@ try {
         writeObj(mesh, normals, out);
         break;
     case MeshFormat::Ply:
-        writePly(mesh, normals, encoding, out);
+        writePly(mesh, {normals, {}, {}}, encoding, out);
         break;
     case MeshFormat::Off:
         writeOff(mesh, normals, out);
@@ -201,11 +229,26 @@ try {
         writeStl(mesh, encoding, out);
         break;
     }
-    std::ofstream file(path, std::ios::binary);
-    file.write(out.bytes().data(), static_cast<std::streamsize>(out.bytes().size()));
-    file.close();
-    if (!file) return Error{ErrorKind::FileNotWritable, path + ": cannot be written"};
-    return Done{};
+    return save(out, path);
+} catch (const std::exception& failure) {
+    return Error{ErrorKind::FileNotWritable, path + ": " + failure.what()};
+}
+
+Status writeColoredPly(const Mesh& mesh, const std::string& path, std::span<const Color> colors,
+                       std::span<const double> quality, Encoding encoding)
+try {
+    const Result<MeshFormat> format = meshFormat(path);
+    if (!format || *format != MeshFormat::Ply)
+        return Error{ErrorKind::FormatUnknown, path + ": colours are written to .ply only"};
+    if (const Status status = checked(mesh, *format, {}, encoding); !status)
+        return Error{status.error().kind, path + ": " + status.error().message};
+    for (const size_t count : {colors.size(), quality.size()})
+        if (count != 0 && count != mesh.positions.size())
+            return Error{ErrorKind::BadArgument, path + ": " + std::to_string(count) + " values for " +
+                                                     std::to_string(mesh.vertexCount()) + " vertices"};
+    Output out(encoding == Encoding::BinaryBigEndian);
+    writePly(mesh, {{}, colors, quality}, encoding, out);
+    return save(out, path);
 } catch (const std::exception& failure) {
     return Error{ErrorKind::FileNotWritable, path + ": " + failure.what()};
 }

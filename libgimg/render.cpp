@@ -1,6 +1,7 @@
 #include "gimg/render.h"
 
 #include "embree_scene.h"
+#include "mesh_check.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/info.h>
@@ -23,21 +24,6 @@ constexpr int kLargestSide = 8192; // pixels
 constexpr int kLargestSupersampling = 8;
 constexpr double kLargestCoordinate = 1e9; // in units of the camera: beyond, floats see nothing
 constexpr double kSmallestUpAngleSine = 1e-6;
-
-std::optional<Error> objection(const Mesh& mesh)
-{
-    if (mesh.faces.empty()) return Error{ErrorKind::EmptyMesh, "the mesh has no faces"};
-    for (size_t f = 0; f < mesh.faces.size(); ++f)
-        for (int v : mesh.faces[f]) {
-            if (v < 0 || v >= mesh.vertexCount())
-                return Error{ErrorKind::BadArgument, "face " + std::to_string(f) + " names vertex " +
-                                                         std::to_string(v) + " of " +
-                                                         std::to_string(mesh.vertexCount())};
-            if (!mesh.positions[v].allFinite())
-                return Error{ErrorKind::NotFinite, "vertex " + std::to_string(v) + " is not finite"};
-        }
-    return std::nullopt;
-}
 
 std::optional<Error> objection(const RenderOptions& options)
 {
@@ -208,7 +194,7 @@ RgbImage image(const Seen& scene)
 
 Result<Camera> cameraFor(const Mesh& mesh, const View& view)
 {
-    if (const std::optional<Error> error = objection(mesh)) return *error;
+    if (const std::optional<Error> error = objectionToTriangles(mesh, "the mesh")) return *error;
     Camera camera;
     camera.toward = view.toward.stableNormalized();
     const Vec3 across = camera.toward.cross(view.up.stableNormalized());
@@ -233,7 +219,7 @@ Result<Camera> cameraFor(const Mesh& mesh, const View& view)
 
 Result<RgbImage> render(const Mesh& mesh, const RenderOptions& options)
 try {
-    if (const std::optional<Error> error = objection(mesh)) return *error;
+    if (const std::optional<Error> error = objectionToTriangles(mesh, "the mesh")) return *error;
     if (const std::optional<Error> error = objection(options)) return *error;
     const Result<Camera> camera = options.camera ? *options.camera : cameraFor(mesh, options.view);
     if (!camera) return camera.error();

@@ -184,7 +184,7 @@ TEST(Render, RefusesWhatCannotBeDrawn)
     EXPECT_EQ(refusal({}).kind, ErrorKind::EmptyMesh);
     Mesh bad = good;
     bad.faces[0][0] = 9;
-    EXPECT_EQ(refusal(bad).message, "face 0 names vertex 9 of 4");
+    EXPECT_EQ(refusal(bad).message, "the mesh: face 0 names vertex 9 of 4");
     bad = good;
     bad.positions[3][1] = std::nan("");
     EXPECT_EQ(refusal(bad).kind, ErrorKind::NotFinite);

@@ -1,12 +1,15 @@
 #include "command.h"
+#include "heatmap.h"
 
 #include "../cli.h"
 
 #include "gimg/distance.h"
 #include "gimg/mesh_io.h"
 
+#include <algorithm>
 #include <cmath>
 #include <memory>
+#include <optional>
 
 namespace gimg::gimrd {
 namespace {
@@ -17,9 +20,23 @@ struct CompareOptions
     std::string test;
     DistanceOptions distance;
     bool json = false;
+    std::string heatmap;           ///< file; none if empty
+    std::optional<double> percent; ///< of the diagonal, the top of the heatmap's scale
 };
 
-bool printJson(const SurfaceDistance& d)
+/// What is left for the top of the scale: a few outliers should not paint all the rest in one colour.
+constexpr double kTopQuantile = 0.999;
+
+/// Zero where no heatmap was asked for.
+double topOfScale(const CompareOptions& options, const SurfaceDistance& d)
+{
+    if (options.heatmap.empty()) return 0;
+    if (options.percent) return *options.percent / 100 * d.diagonal;
+    const double top = std::max(d.quantileRefToTest, d.quantileTestToRef);
+    return top > 0 ? top : d.hausdorff();
+}
+
+bool printJson(const SurfaceDistance& d, const CompareOptions& options)
 {
     const auto point = [](const Vec3& p) { return nlohmann::ordered_json{p[0], p[1], p[2]}; };
     nlohmann::ordered_json object;
@@ -32,10 +49,33 @@ bool printJson(const SurfaceDistance& d)
     object["max_test_to_ref_at"] = point(d.maxTestToRefAt);
     object["hausdorff"] = d.hausdorff();
     object["psnr"] = d.psnr(); // null where infinite: JSON has no such number
+    const auto angle = [&object](const std::string& name, const std::optional<double>& degrees) {
+        object[name] = degrees ? nlohmann::ordered_json(*degrees) : nlohmann::ordered_json(nullptr);
+    };
+    const auto rms = [](const std::optional<NormalError>& e) {
+        return e ? std::optional(e->rms) : std::nullopt;
+    };
+    const auto mean = [](const std::optional<NormalError>& e) {
+        return e ? std::optional(e->mean) : std::nullopt;
+    };
+    angle("normal_rms_ref_to_test", rms(d.normalsRefToTest));
+    angle("normal_rms_test_to_ref", rms(d.normalsTestToRef));
+    angle("normal_mean_ref_to_test", mean(d.normalsRefToTest));
+    angle("normal_mean_test_to_ref", mean(d.normalsTestToRef));
+    angle("normal_error_degrees", d.normalRms());
+    if (!options.heatmap.empty()) object["heatmap_max"] = topOfScale(options, d);
     return cli::writeJson("-", object);
 }
 
-bool printText(const SurfaceDistance& d)
+void printNormals(const char* direction, const std::optional<NormalError>& error)
+{
+    if (error)
+        std::printf("normals %s  %.4g degrees rms, mean %.4g\n", direction, error->rms, error->mean);
+    else
+        std::printf("normals %s  none\n", direction);
+}
+
+bool printText(const SurfaceDistance& d, const CompareOptions& options)
 {
     const auto at = [](const Vec3& p) { std::printf("   at (%.6g, %.6g, %.6g)\n", p[0], p[1], p[2]); };
     std::printf("diagonal          %.6g\n", d.diagonal);
@@ -50,6 +90,12 @@ bool printText(const SurfaceDistance& d)
         std::printf("psnr              inf\n");
     else
         std::printf("psnr              %.2f dB\n", d.psnr());
+    printNormals("ref to test", d.normalsRefToTest);
+    printNormals("test to ref", d.normalsTestToRef);
+    if (!options.heatmap.empty()) {
+        const double top = topOfScale(options, d);
+        std::printf("heatmap           0 to %.6g, %.4g %% of the diagonal\n", top, 100 * top / d.diagonal);
+    }
     return std::fflush(stdout) == 0;
 }
 
@@ -59,10 +105,17 @@ int compare(const CompareOptions& options)
     if (!reference) return cli::fail("gimrd", cli::Refused, reference.error().message);
     const Result<Mesh> test = readTriangles(options.test);
     if (!test) return cli::fail("gimrd", cli::Refused, test.error().message);
-    const Result<SurfaceDistance> d = compareSurfaces(*reference, *test, options.distance);
+    DistanceOptions distance = options.distance;
+    distance.normals = true;
+    if (!options.heatmap.empty()) distance.quantile = kTopQuantile;
+    const Result<SurfaceDistance> d = compareSurfaces(*reference, *test, distance);
     if (!d) return cli::fail("gimrd", cli::Refused, d.error().message);
-    const bool printed = options.json ? printJson(*d) : printText(*d);
-    return printed ? int{cli::Done} : cli::fail("gimrd", cli::Refused, "cannot write the result");
+    const bool printed = options.json ? printJson(*d, options) : printText(*d, options);
+    if (!printed) return cli::fail("gimrd", cli::Refused, "cannot write the result");
+    if (options.heatmap.empty()) return cli::Done;
+    const Heatmap heatmap{options.heatmap, topOfScale(options, *d), d->diagonal, distance.threads};
+    const Status written = writeHeatmap(*reference, *test, heatmap);
+    return written ? int{cli::Done} : cli::fail("gimrd", cli::Refused, written.error().message);
 }
 
 } // namespace
@@ -70,7 +123,8 @@ int compare(const CompareOptions& options)
 Command addCompare(CLI::App& app)
 {
     const auto options = std::make_shared<CompareOptions>();
-    CLI::App* sub = app.add_subcommand("compare", "Distance between two surfaces, both ways, and PSNR");
+    CLI::App* sub =
+        app.add_subcommand("compare", "Distance and angle between two surfaces, both ways, and PSNR");
     sub->add_option("REF", options->reference, "Reference mesh (.obj, .ply, .off, .stl)")->required();
     sub->add_option("TEST", options->test, "Mesh to compare with it; its topology does not matter")
         ->required();
@@ -82,6 +136,19 @@ Command addCompare(CLI::App& app)
         ->check(CLI::Range(0, 1024))
         ->capture_default_str();
     sub->add_flag("--json", options->json, "Print JSON; psnr is null where the surfaces agree");
+    const auto knownFormat = [](const std::string& path) {
+        return heatmapFormat(path) ? std::string() : path + ": a heatmap is written to .ply or .png";
+    };
+    CLI::Option* heatmap =
+        sub->add_option("--heatmap", options->heatmap,
+                        "Write distances as colours: .ply, the test mesh; .png, a picture of both surfaces")
+            ->check(CLI::Validator(knownFormat, "FILE"));
+    sub->add_option(
+           "--heatmap-max", options->percent,
+           "Distance of the brightest colour, in % of the diagonal; by default 99.9 % of the samples "
+           "are nearer")
+        ->needs(heatmap)
+        ->check(CLI::PositiveNumber);
     return {sub, [options] { return compare(*options); }};
 }
 

@@ -5,6 +5,7 @@
 
 #include <cstdint>
 #include <memory>
+#include <optional>
 
 namespace gimg {
 
@@ -13,6 +14,16 @@ struct DistanceOptions
     int samples = 200000; ///< on each surface, spread evenly over its area
     uint64_t seed = 1;    ///< same seed, same samples
     int threads = 0;      ///< at most one a core; 0: as many. The numbers do not depend on it.
+    bool normals = false; ///< compare normals too
+    double quantile = 0;  ///< in (0, 1]: find this quantile of the samples' distances too
+};
+
+/// Angles between the normals of two surfaces, in degrees: 0 to 180, which is the same surface turned inside
+/// out.
+struct NormalError
+{
+    double rms = 0;
+    double mean = 0;
 };
 
 /// How far two surfaces are apart, in the unit of the coordinates. Distances are from points of one surface
@@ -27,6 +38,18 @@ struct SurfaceDistance
     double maxTestToRef = 0;
     Vec3 maxRefToTestAt = Vec3::Zero(); ///< the point of the reference farthest from the test surface
     Vec3 maxTestToRefAt = Vec3::Zero(); ///< the point of the test surface farthest from the reference
+    double quantileRefToTest = 0;       ///< no more than this is the distance of DistanceOptions::quantile
+    double quantileTestToRef = 0;       ///< of all samples; 0 where it is not asked for
+
+    /// At every sample the angle between the normal of its face and that of the other surface at the nearest
+    /// point: of the face there, or on an edge or in a vertex the angle-weighted mean of the faces that meet.
+    /// Samples for which one of the two does not exist (faces without area, faces back to back) take no part.
+    /// None: not asked for, or no sample was left.
+    std::optional<NormalError> normalsRefToTest;
+    std::optional<NormalError> normalsTestToRef;
+
+    /// The larger of the two one-sided values, in degrees; none where one is missing.
+    std::optional<double> normalRms() const;
 
     /// The larger of the two one-sided values.
     double rms() const;

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gimg/color.h"
 #include "gimg/mesh.h"
 #include "gimg/result.h"
 
@@ -95,5 +96,12 @@ enum class Encoding
 /// FileNotWritable.
 Status writeMesh(const Mesh& mesh, const std::string& path, std::span<const Vec3> normals = {},
                  Encoding encoding = Encoding::Binary);
+
+/// Writes a PLY file whose vertices have a colour (uchar red, green, blue) and a number of their own (float
+/// quality), under the names that MeshLab and Blender read. Positions as in writeMesh.
+/// @param colors, quality  none, or one for each vertex
+/// Errors: as writeMesh; FormatUnknown for any extension but .ply.
+Status writeColoredPly(const Mesh& mesh, const std::string& path, std::span<const Color> colors,
+                       std::span<const double> quality = {}, Encoding encoding = Encoding::Binary);
 
 } // namespace gimg

@@ -1,17 +1,14 @@
 #pragma once
 
+#include "gimg/color.h"
 #include "gimg/image_io.h"
 #include "gimg/mesh.h"
 #include "gimg/result.h"
 
-#include <array>
-#include <cstdint>
 #include <functional>
 #include <optional>
 
 namespace gimg {
-
-using Color = std::array<uint8_t, 3>; ///< red, green, blue as a screen shows them
 
 inline constexpr Color kClay{205, 196, 182};
 inline constexpr Color kInside{214, 40, 40}; ///< back faces: what shows through a crack
