@@ -34,6 +34,22 @@ std::string quoted(const std::string& text)
     return out + '\'';
 }
 
+std::string lastLine(std::string text)
+{
+    while (!text.empty() && text.back() == '\n') text.pop_back();
+    return text.substr(text.find_last_of('\n') + 1);
+}
+
+// To whole steps of 5 dB around the points; gnuplot alone refuses a range that is empty.
+std::string psnrRange(const std::vector<Curve>& curves)
+{
+    double low = curves[0].points[0].psnr, high = low;
+    for (const Curve& curve : curves)
+        for (const RatePoint& p : curve.points) low = std::min(low, p.psnr), high = std::max(high, p.psnr);
+    return "set yrange [" + fixedText(5 * std::floor((low - 0.5) / 5), 0) + ':' +
+           fixedText(5 * std::ceil((high + 0.5) / 5), 0) + "]\n";
+}
+
 // What all plots share; gnuplot's own defaults are set again so that no file of the user's changes them.
 std::string frame(const std::string& title, const std::vector<size_t>& sizes)
 {
@@ -74,7 +90,7 @@ Status draw(const std::string& title, const std::vector<size_t>& sizes, const st
 {
     const fs::path script = folder.temporary(".gnuplot");
     const fs::path drafts[] = {folder.temporary(".svg"), folder.temporary(".png")};
-    const std::string body = frame(title, sizes) + plot(curves);
+    const std::string body = frame(title, sizes) + psnrRange(curves) + plot(curves);
     const std::string text =
         "set terminal svg size 760,480 dynamic noenhanced font 'sans-serif,14' background '#ffffff'\n"
         "set output " +
@@ -87,8 +103,8 @@ Status draw(const std::string& title, const std::vector<size_t>& sizes, const st
     const Result<Ended> ended = runProgram({"gnuplot", "-d", script.string()}, [](const std::string&) {});
     if (!ended) return ended.error();
     if (ended->code != 0)
-        return Error{ErrorKind::CodecFailure, "gnuplot cannot draw " + svg.filename().string() + ": " +
-                                                  ended->errors.substr(0, ended->errors.find('\n'))};
+        return Error{ErrorKind::CodecFailure,
+                     "gnuplot cannot draw " + svg.filename().string() + ": " + lastLine(ended->errors)};
     const Status published = folder.publish(drafts[0], svg);
     if (!published) return published;
     return folder.publish(drafts[1], fs::path(svg).replace_extension(".png"));

@@ -20,6 +20,7 @@ void addDistance(Json& json, const Point& p)
     json["max_ref_to_test"] = d.maxRefToTest;
     json["max_test_to_ref"] = d.maxTestToRef;
     json["hausdorff"] = d.hausdorff();
+    json["normal_error_degrees"] = p.normalError ? Json(*p.normalError) : Json();
 }
 
 SurfaceDistance distanceFrom(const Json& json, double diagonal)
@@ -54,6 +55,7 @@ Point readAll(const Json& json)
     p.bytes = json.at("bytes");
     p.faces = json.at("faces");
     p.distance = distanceFrom(json, p.diagonal);
+    if (const Json& angle = json.at("normal_error_degrees"); !angle.is_null()) p.normalError = angle;
     p.file = json.at("file");
     p.settings = json.at("settings");
     return p;

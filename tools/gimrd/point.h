@@ -40,7 +40,8 @@ struct Point
     size_t bytes = 0;
     int faces = 0; ///< of the decoded mesh
     SurfaceDistance distance;
-    std::string file; ///< the encoded file below the folder `work`
+    std::optional<double> normalError; ///< in degrees, SurfaceDistance::normalRms()
+    std::string file;                  ///< the encoded file below the folder `work`
     nlohmann::ordered_json settings = nlohmann::ordered_json::object();
     nlohmann::ordered_json versions = nlohmann::ordered_json::object(); ///< of what made it
 };

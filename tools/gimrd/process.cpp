@@ -133,6 +133,12 @@ Result<Ended> runProgram(const std::vector<std::string>& command,
     return ended;
 }
 
+bool areProgramsEnding()
+{
+    const std::lock_guard lock(runningMutex);
+    return ending;
+}
+
 void endPrograms()
 {
     const std::lock_guard lock(runningMutex);

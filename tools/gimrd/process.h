@@ -26,4 +26,7 @@ Result<Ended> runProgram(const std::vector<std::string>& command,
 /// Ends all that runProgram() runs, with what they have started, and lets it start no more. For the way out.
 void endPrograms();
 
+/// Whether endPrograms() was called: what fails from then on fails for that reason.
+bool areProgramsEnding();
+
 } // namespace gimg::gimrd

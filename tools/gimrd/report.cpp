@@ -390,7 +390,8 @@ private:
         if (row.faces == 0) return "";
         std::string html = "<details";
         if (results_.meshes.size() <= kMeshesShownOpen) html += " open";
-        html += "><summary>Reconstructions</summary>\n<div class=\"scroll\"><table "
+        html += "><summary>Reconstructions, with PSNR and the root mean square error of the "
+                "normals</summary>\n<div class=\"scroll\"><table "
                 "class=\"pictures\">\n<thead><tr>"
                 "<th scope=\"col\">bytes</th>" +
                 sizeHeads() +
@@ -412,8 +413,9 @@ private:
                    "</span></td>";
         const std::string stem = pointStem(results_.series[series].id, p->target);
         const std::string dB = dBText(p->distance.psnr()) + " dB";
+        const std::string angle = p->normalError ? ", " + fixedText(*p->normalError, 1) + "°" : "";
         return "<td>" + picture(row, stem, row.name + ", " + results_.series[series].label + ", " + dB) +
-               "<span>" + dB + "</span></td>";
+               "<span>" + dB + angle + "</span></td>";
     }
 
     std::string howMade() const

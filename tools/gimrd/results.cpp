@@ -31,9 +31,10 @@ std::string csvLine(const Point& p)
         for (const double value :
              {d.psnr(), d.rmsRefToTest, d.rmsTestToRef, d.maxRefToTest, d.maxTestToRef, d.hausdorff()})
             line += ',' + shortest(value);
+        line += ',' + (p.normalError ? shortest(*p.normalError) : std::string());
         line += ',' + std::to_string(p.faces) + ',' + quoted(p.settings.dump());
     } else {
-        line += ",,,,,,,,,";
+        line += ",,,,,,,,,,";
     }
     return line + ',' + quoted(p.message) + '\n';
 }
@@ -80,41 +81,59 @@ void addVersions(Json& into, const Json& versions)
     }
 }
 
-} // namespace
-
-SweepResults collectResults(const SweepPlan& plan, const std::vector<std::string>& hashes,
-                            const SweepFolder& folder, int samples)
+SweepResults emptyResults(const SweepPlan& plan, const std::vector<std::string>& hashes)
 {
     SweepResults results;
-    results.samples = samples;
     results.sizes = plan.sizes;
-    const size_t sizes = plan.sizes.size();
-    std::vector<bool> isUsed(plan.series.size());
-    for (size_t m = 0; m < plan.meshes.size(); ++m) {
-        SweepResults::Row row{plan.meshes[m].name, hashes[m], "", 0, 0, {}};
-        row.points.assign(plan.series.size(), std::vector<std::optional<Point>>(sizes));
-        results.meshes.push_back(std::move(row));
-    }
     for (const Series& series : plan.series)
         results.series.push_back({series.id, series.label, plan.coders[series.coder].ours});
-    for (const Job& job : plan.jobs)
-        for (size_t s = 0; s < sizes; ++s) {
+    for (size_t m = 0; m < plan.meshes.size(); ++m) {
+        SweepResults::Row row{plan.meshes[m].name, hashes[m], "", 0, 0, {}};
+        row.points.assign(plan.series.size(), std::vector<std::optional<Point>>(plan.sizes.size()));
+        results.meshes.push_back(std::move(row));
+    }
+    return results;
+}
+
+void takePoint(SweepResults& results, const Job& job, size_t size, Point point)
+{
+    SweepResults::Row& row = results.meshes[job.mesh];
+    if (point.referenceFaces > 0) {
+        row.faces = point.referenceFaces;
+        row.diagonal = point.diagonal;
+        row.note = point.note;
+    }
+    addVersions(results.series[job.series].versions, point.versions);
+    row.points[job.series][size] = std::move(point);
+}
+
+void dropSeries(SweepResults& results, size_t series)
+{
+    const auto at = static_cast<std::ptrdiff_t>(series);
+    results.series.erase(results.series.begin() + at);
+    for (SweepResults::Row& row : results.meshes) row.points.erase(row.points.begin() + at);
+}
+
+} // namespace
+
+SweepResults collectResults(const SweepPlan& plan, const std::vector<size_t>& jobs,
+                            const std::vector<std::string>& hashes, const SweepFolder& folder, int samples)
+{
+    SweepResults results = emptyResults(plan, hashes);
+    results.samples = samples;
+    std::vector<bool> isUsed(plan.series.size());
+    for (const size_t index : jobs) {
+        const Job& job = plan.jobs[index];
+        for (size_t s = 0; s < plan.sizes.size(); ++s) {
             std::optional<Point> point =
                 storedPoint(folder, plan, job, plan.sizes[s], hashes[job.mesh], samples);
             if (!point) continue;
             isUsed[job.series] = true;
-            SweepResults::Row& row = results.meshes[job.mesh];
-            if (point->referenceFaces > 0)
-                row.faces = point->referenceFaces, row.diagonal = point->diagonal, row.note = point->note;
-            addVersions(results.series[job.series].versions, point->versions);
-            row.points[job.series][s] = std::move(point);
+            takePoint(results, job, s, std::move(*point));
         }
-    for (size_t i = plan.series.size(); i-- > 0;) {
-        if (isUsed[i]) continue;
-        results.series.erase(results.series.begin() + static_cast<std::ptrdiff_t>(i));
-        for (SweepResults::Row& row : results.meshes)
-            row.points.erase(row.points.begin() + static_cast<std::ptrdiff_t>(i));
     }
+    for (size_t i = plan.series.size(); i-- > 0;)
+        if (!isUsed[i]) dropSeries(results, i);
     return results;
 }
 
@@ -183,8 +202,9 @@ bool anyFailed(const SweepResults& results)
 
 std::string resultsCsv(const SweepResults& results)
 {
-    std::string csv = "mesh,coder,grid,target,state,bytes,psnr,rms_ref_to_test,rms_test_to_ref,"
-                      "max_ref_to_test,max_test_to_ref,hausdorff,faces,settings,message\n";
+    std::string csv =
+        "mesh,coder,grid,target,state,bytes,psnr,rms_ref_to_test,rms_test_to_ref,"
+        "max_ref_to_test,max_test_to_ref,hausdorff,normal_error_degrees,faces,settings,message\n";
     for (const SweepResults::Row& row : results.meshes)
         for (const auto& series : row.points)
             for (const std::optional<Point>& p : series)

@@ -46,9 +46,10 @@ struct SweepResults
     std::vector<std::string> broken; ///< adapters that do not describe themselves
 };
 
-/// Reads the points of a plan; those that are not there stay empty.
-SweepResults collectResults(const SweepPlan& plan, const std::vector<std::string>& hashes,
-                            const SweepFolder& folder, int samples);
+/// Reads the points of these jobs of a plan; those that are not there stay empty. Series without any are left
+/// out.
+SweepResults collectResults(const SweepPlan& plan, const std::vector<size_t>& jobs,
+                            const std::vector<std::string>& hashes, const SweepFolder& folder, int samples);
 
 /// What a coder has of the row: its finished points.
 std::vector<RatePoint> ratePoints(const SweepResults::Row& row, size_t series);

@@ -85,26 +85,27 @@ bool isNamed(const SweepPlan& plan, const std::string& coder)
     return std::find(plan.named.begin(), plan.named.end(), coder) != plan.named.end();
 }
 
-// Coders of the plan that are not installed and have points missing.
-std::vector<Absence> absences(const SweepPlan& plan, const SweepResults& results)
+bool isWhole(const SweepPlan& plan, const Job& job, const SweepResults& results)
+{
+    for (size_t c = 0; c < results.series.size(); ++c)
+        if (results.series[c].id == plan.series[job.series].id)
+            return std::ranges::all_of(results.meshes[job.mesh].points[c],
+                                       [](const auto& p) { return p && p->state != Point::State::Failed; });
+    return false;
+}
+
+// Coders that are not installed and have points missing among these jobs.
+std::vector<Absence> absences(const SweepPlan& plan, const std::vector<size_t>& jobs,
+                              const SweepResults& results)
 {
     std::vector<Absence> list;
-    for (const CoderProgram& coder : plan.coders) {
-        if (coder.missing.empty()) continue;
-        bool whole = true;
-        for (const Job& job : plan.jobs) {
-            if (plan.coders[plan.series[job.series].coder].name != coder.name) continue;
-            size_t column = 0;
-            while (column < results.series.size() && results.series[column].id != plan.series[job.series].id)
-                ++column;
-            if (column == results.series.size()) {
-                whole = false;
-                continue;
-            }
-            for (const std::optional<Point>& p : results.meshes[job.mesh].points[column])
-                whole = whole && p && p->state != Point::State::Failed;
-        }
-        if (!whole) list.push_back({coder.name, coder.title, coder.missing});
+    for (size_t c = 0; c < plan.coders.size(); ++c) {
+        const CoderProgram& coder = plan.coders[c];
+        const bool whole = std::ranges::all_of(jobs, [&](size_t index) {
+            const Job& job = plan.jobs[index];
+            return plan.series[job.series].coder != c || isWhole(plan, job, results);
+        });
+        if (!coder.missing.empty() && !whole) list.push_back({coder.name, coder.title, coder.missing});
     }
     return list;
 }
@@ -201,8 +202,8 @@ int sweep(SweepOptions& options)
         return cli::fail("gimrd", cli::Refused, ran.error().message);
     }
 
-    SweepResults results = collectResults(*plan, hashes, *folder, options.run.samples);
-    results.skipped = absences(*plan, results);
+    SweepResults results = collectResults(*plan, jobs, hashes, *folder, options.run.samples);
+    results.skipped = absences(*plan, jobs, results);
     for (const Error& error : broken) results.broken.push_back(error.message);
     results.command = canonicalCommand(options, *plan);
     Status written = Done{};

@@ -81,6 +81,7 @@ Result<std::shared_ptr<SweepReference>> makeReference(const SweepMesh& mesh, con
 
     DistanceOptions options;
     options.samples = samples;
+    options.normals = true;
     options.threads = threads;
     SurfaceMeasure measure(surface->mesh, options);
     Eigen::AlignedBox3d box;

@@ -265,6 +265,7 @@ Status Runner::fill(Point& point, const CodedFile& coded, const Job& job, const 
     point.bytes = coded.bytes;
     point.faces = decoded.faceCount();
     point.distance = *distance;
+    point.normalError = distance->normalRms();
     point.file = point.mesh + '/' + place.filename().string();
     point.settings = coded.settings;
     return Done{};
@@ -273,6 +274,7 @@ Status Runner::fill(Point& point, const CodedFile& coded, const Job& job, const 
 // Writes a point, whatever became of it.
 void Runner::settle(Work& work, const Point& point)
 {
+    if (areProgramsEnding()) return;
     const Clock::time_point now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - work.before).count();
     work.before = now;
