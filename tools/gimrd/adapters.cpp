@@ -2,6 +2,8 @@
 
 #include "process.h"
 
+#include <unistd.h>
+
 #include <algorithm>
 #include <cstdlib>
 #include <tuple>
@@ -13,7 +15,13 @@ using Json = nlohmann::ordered_json;
 
 Error failure(const CoderProgram& coder, const std::string& what)
 {
-    return {ErrorKind::CodecFailure, coder.program.string() + ": " + what};
+    return {ErrorKind::CodecFailure, "adapter " + coder.program.filename().string() + ": " + what};
+}
+
+std::string howItEnded(int code)
+{
+    return code > 128 ? "ended by signal " + std::to_string(code - 128)
+                      : "ended with status " + std::to_string(code);
 }
 
 std::string lastLine(std::string text)
@@ -24,25 +32,25 @@ std::string lastLine(std::string text)
 }
 
 // Runs the adapter; each line it prints must be a JSON object, which `take` reads. Anything that `take`
-// misses in it is a breach of the protocol.
+// misses in it, or names in its result, is a breach of the protocol; the first one is reported.
 Status talk(const CoderProgram& coder, std::vector<std::string> arguments,
-            const std::function<void(const Json&)>& take)
+            const std::function<std::string(const Json&)>& take)
 {
     arguments.insert(arguments.begin(), coder.program.string());
     std::string breach;
     const Result<Ended> ended = runProgram(arguments, [&](const std::string& line) {
+        std::string wrong;
         try {
-            take(Json::parse(line));
+            wrong = take(Json::parse(line));
         } catch (const Json::exception& error) {
-            if (breach.empty())
-                breach = std::string("does not speak the adapters' protocol: ") + error.what();
+            wrong = error.what();
         }
+        if (breach.empty() && !wrong.empty()) breach = "does not speak the adapters' protocol: " + wrong;
     });
     if (!ended) return ended.error();
     if (ended->code != 0) {
         const std::string said = lastLine(ended->errors);
-        return failure(coder, "ended with status " + std::to_string(ended->code) +
-                                  (said.empty() ? "" : ": " + said));
+        return failure(coder, howItEnded(ended->code) + (said.empty() ? "" : ": " + said));
     }
     if (!breach.empty()) return failure(coder, breach);
     return Done{};
@@ -50,7 +58,7 @@ Status talk(const CoderProgram& coder, std::vector<std::string> arguments,
 
 Status describe(CoderProgram& coder)
 {
-    return talk(coder, {"describe"}, [&](const Json& json) {
+    const Status status = talk(coder, {"describe"}, [&](const Json& json) {
         coder.name = json.at("name");
         coder.title = json.at("title");
         coder.codec = json.at("codec");
@@ -59,7 +67,48 @@ Status describe(CoderProgram& coder)
         coder.usesGrid = json.at("uses_grid");
         coder.packages = json.at("packages").get<std::vector<std::string>>();
         coder.missing = json.at("missing").get<std::vector<std::string>>();
+        return std::string();
     });
+    if (status && coder.name.empty()) return failure(coder, "does not describe itself");
+    return status;
+}
+
+// The adapters' answer for one size. A file must be where it is said to be and as large as it is said to be:
+// nothing else keeps a coder from being praised for bytes that it did not write.
+struct Answer
+{
+    CodedFile coded;
+    std::string breach;
+};
+
+bool isPlainName(const std::string& name)
+{
+    return !name.empty() && name[0] != '.' && name.find('/') == std::string::npos;
+}
+
+Answer readAnswer(const Json& json, const std::filesystem::path& out)
+{
+    Answer answer;
+    CodedFile& coded = answer.coded;
+    coded.target = json.at("target");
+    if (json.contains("unreachable")) {
+        coded.unreachable = json.at("unreachable");
+        if (coded.unreachable.empty()) coded.unreachable = "no reason given";
+        return answer;
+    }
+    coded.bytes = json.at("bytes");
+    coded.settings = json.at("settings");
+    const std::string file = json.at("file"), decoded = json.at("decoded");
+    if (!isPlainName(file)) answer.breach = "a file named '" + file + "'";
+    if (!isPlainName(decoded)) answer.breach = "a file named '" + decoded + "'";
+    coded.file = out / file;
+    coded.decoded = out / decoded;
+    std::error_code failed;
+    const std::uintmax_t size = std::filesystem::file_size(coded.file, failed);
+    if (answer.breach.empty() && (failed || size != coded.bytes))
+        answer.breach = "the file " + file + " does not have the " + std::to_string(coded.bytes) +
+                        " bytes that it should";
+    return answer;
 }
 
 } // namespace
@@ -72,21 +121,31 @@ std::filesystem::path adapterFolder()
     return self.parent_path().parent_path() / "libexec/gimg/adapters";
 }
 
-Result<std::vector<CoderProgram>> findCoders()
+Result<std::vector<CoderProgram>> findCoders(std::vector<Error>* broken)
 {
     std::error_code failed;
+    std::vector<std::filesystem::path> programs;
+    for (const auto& entry : std::filesystem::directory_iterator(adapterFolder(), failed))
+        if (entry.is_regular_file() && ::access(entry.path().c_str(), X_OK) == 0)
+            programs.push_back(entry.path());
+    if (failed) return Error{ErrorKind::FileNotReadable, adapterFolder().string() + ": " + failed.message()};
+    std::sort(programs.begin(), programs.end());
     std::vector<CoderProgram> coders;
-    for (const auto& entry : std::filesystem::directory_iterator(adapterFolder(), failed)) {
-        if (!entry.is_regular_file()) continue;
+    for (const std::filesystem::path& program : programs) {
         CoderProgram coder;
-        coder.program = entry.path();
-        const Status described = describe(coder);
-        if (!described) return described.error();
-        coders.push_back(std::move(coder));
+        coder.program = program;
+        Status described = describe(coder);
+        for (const CoderProgram& other : coders)
+            if (described && other.name == coder.name)
+                described = failure(coder, "has the name " + coder.name + ", as " +
+                                               other.program.filename().string() + " has");
+        if (described)
+            coders.push_back(std::move(coder));
+        else if (broken != nullptr)
+            broken->push_back(described.error());
+        else
+            return described.error();
     }
-    if (failed)
-        return Error{ErrorKind::FileNotReadable,
-                     adapterFolder().string() + ": no adapters: " + failed.message()};
     std::sort(coders.begin(), coders.end(), [](const CoderProgram& a, const CoderProgram& b) {
         return std::tuple(!a.ours, a.name) < std::tuple(!b.ours, b.name);
     });
@@ -105,18 +164,14 @@ Status encodeWith(const CoderProgram& coder, const std::filesystem::path& input,
     const std::vector<std::string> arguments = {
         "encode",    input.string(),         out.string(), "--bytes", list, "--grid", std::to_string(grid),
         "--threads", std::to_string(threads)};
+    std::vector<size_t> open = sizes;
     return talk(coder, arguments, [&](const Json& json) {
-        CodedFile coded;
-        coded.target = json.at("target");
-        if (json.contains("unreachable")) {
-            coded.unreachable = json.at("unreachable");
-        } else {
-            coded.bytes = json.at("bytes");
-            coded.file = out / json.at("file").get<std::string>();
-            coded.decoded = out / json.at("decoded").get<std::string>();
-            coded.settings = json.at("settings");
-        }
-        done(coded);
+        const Answer answer = readAnswer(json, out);
+        if (!answer.breach.empty()) return answer.breach;
+        if (std::erase(open, answer.coded.target) == 0)
+            return "an answer for " + std::to_string(answer.coded.target) + " bytes, which nobody asked for";
+        done(answer.coded);
+        return std::string();
     });
 }
 

@@ -28,9 +28,10 @@ struct CoderProgram
 std::filesystem::path adapterFolder();
 
 /// All coders of adapterFolder(), ours first, each side by name.
-/// Errors: FileNotReadable if the folder does not exist; CodecFailure if a program there does not describe
-/// itself.
-Result<std::vector<CoderProgram>> findCoders();
+/// @param broken  gets what is wrong with programs there that do not describe themselves or share a name with
+///                another; they are then left out. Null: the first of them is an error.
+/// Errors: FileNotReadable if the folder cannot be read; CodecFailure.
+Result<std::vector<CoderProgram>> findCoders(std::vector<Error>* broken = nullptr);
 
 /// What an adapter made for one size.
 struct CodedFile
@@ -42,7 +43,8 @@ struct CodedFile
     nlohmann::ordered_json settings;
 };
 
-/// Runs `encode` of the protocol; `done` is called as each size is finished.
+/// Runs `encode` of the protocol; `done` is called as each size is finished, once for each, with a file whose
+/// size has been checked to be `bytes`. Whether that is at most the target is left to the caller.
 /// Errors: CodecFailure, with the last line the adapter printed, if it failed or broke the protocol.
 Status encodeWith(const CoderProgram& coder, const std::filesystem::path& input,
                   const std::filesystem::path& out, const std::vector<std::size_t>& sizes, int grid,

@@ -14,5 +14,6 @@ struct Command
 };
 
 Command addCompare(CLI::App& app);
+Command addSweep(CLI::App& app);
 
 } // namespace gimg::gimrd

@@ -23,4 +23,10 @@ struct Ended
 Result<Ended> runProgram(const std::vector<std::string>& command,
                          const std::function<void(const std::string&)>& line);
 
+/// Ends all that runProgram() runs, with what they have started, and lets it start no more. For the way out.
+void endPrograms();
+
+/// Whether endPrograms() was called: what fails from then on fails for that reason.
+bool areProgramsEnding();
+
 } // namespace gimg::gimrd
