@@ -4,6 +4,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <tuple>
 
 namespace gimg::gimrd {
@@ -26,7 +27,7 @@ std::string lastLine(std::string text)
 // Runs the adapter; each line it prints must be a JSON object, which `take` reads. Anything that `take`
 // misses in it is a breach of the protocol.
 Status talk(const CoderProgram& coder, std::vector<std::string> arguments,
-            const std::function<void(const Json&)>& take)
+            const std::function<void(const Json&)>& take, std::int64_t* peakBytes = nullptr)
 {
     arguments.insert(arguments.begin(), coder.program.string());
     std::string breach;
@@ -45,6 +46,7 @@ Status talk(const CoderProgram& coder, std::vector<std::string> arguments,
                                   (said.empty() ? "" : ": " + said));
     }
     if (!breach.empty()) return failure(coder, breach);
+    if (peakBytes != nullptr) *peakBytes = ended->peakBytes;
     return Done{};
 }
 
@@ -118,6 +120,28 @@ Status encodeWith(const CoderProgram& coder, const std::filesystem::path& input,
         }
         done(coded);
     });
+}
+
+Result<CoderTimes> timeWith(const CoderProgram& coder, const std::filesystem::path& input, std::size_t bytes,
+                            int runs)
+{
+    std::optional<CoderTimes> times;
+    std::int64_t peakBytes = 0;
+    const std::vector<std::string> arguments = {
+        "time", input.string(), "--bytes", std::to_string(bytes), "--runs", std::to_string(runs)};
+    const Status talked = talk(
+        coder, arguments,
+        [&](const Json& json) {
+            times =
+                CoderTimes{json.at("bytes"), json.at("encode_ms"), json.at("decode_ms"), json.at("note"), 0};
+        },
+        &peakBytes);
+    if (!talked) return talked.error();
+    const auto wanted = static_cast<size_t>(runs);
+    if (!times || times->encode.size() != wanted || times->decode.size() != wanted)
+        return failure(coder, "did not give the times of " + std::to_string(runs) + " runs");
+    times->peakBytes = peakBytes;
+    return *times;
 }
 
 } // namespace gimg::gimrd

@@ -13,6 +13,7 @@ struct Command
     std::function<int()> run;
 };
 
+Command addBench(CLI::App& app);
 Command addCompare(CLI::App& app);
 
 } // namespace gimg::gimrd

@@ -1,0 +1,114 @@
+#include "bench_text.h"
+
+#include <algorithm>
+#include <cstdio>
+#include <string>
+#include <vector>
+
+namespace gimg::gimrd {
+namespace {
+
+using Json = nlohmann::ordered_json;
+
+std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
+
+// "gim_positions_ms" reads "gim positions".
+std::string label(std::string key)
+{
+    if (key.ends_with("_ms")) key.resize(key.size() - 3);
+    for (char& c : key)
+        if (c == '_') c = ' ';
+    return key;
+}
+
+std::string milliseconds(const Json& value)
+{
+    char text[32];
+    const double ms = value.get<double>();
+    std::snprintf(text, sizeof text, ms < 1000 ? "%.2f" : "%.0f", ms);
+    return text;
+}
+
+std::string megabytes(const Json& value)
+{
+    char text[32];
+    if (!value.is_number()) return "?";
+    std::snprintf(text, sizeof text, "%.1f", value.get<double>() / 1e6);
+    return text;
+}
+
+void printSpread(const Json& report, const char* section, const char* title)
+{
+    if (!report["spread"].contains(section)) return;
+    std::printf("\n%-28s %10s %10s %10s %6s\n", title, "median", "min", "max", "runs");
+    for (const auto& [key, s] : report["spread"][section].items())
+        std::printf("  %-26s %10s %10s %10s %6s\n", label(key).c_str(), milliseconds(s["median"]).c_str(),
+                    milliseconds(s["min"]).c_str(), milliseconds(s["max"]).c_str(), text(s["runs"]).c_str());
+}
+
+void printMemory(const Json& report)
+{
+    std::printf("\n%-28s %10s\n", "memory, MB", "");
+    for (const auto& [key, value] : report["memory"].items()) {
+        std::string name = label(key);
+        name.resize(name.size() - std::string(" bytes").size());
+        std::printf("  %-26s %10s\n", name.c_str(), megabytes(value).c_str());
+    }
+}
+
+std::string cell(const std::string& key, const Json& step)
+{
+    if (!step.contains(key)) return "-";
+    if (key.ends_with("_ms")) return milliseconds(step[key]);
+    if (key.ends_with("_bytes")) return megabytes(step[key]);
+    return text(step[key]);
+}
+
+// A line for each step, a column for each number that any step has.
+void printSteps(const Json& steps, const char* title)
+{
+    if (steps.empty()) return;
+    std::vector<std::string> columns;
+    for (const Json& step : steps)
+        for (const auto& [key, value] : step.items())
+            if (key != "failed" && std::find(columns.begin(), columns.end(), key) == columns.end())
+                columns.push_back(key);
+    std::printf("\n%s\n", title);
+    for (const std::string& column : columns) std::printf("  %16s", label(column).c_str());
+    std::printf("\n");
+    for (const Json& step : steps) {
+        for (const std::string& column : columns) std::printf("  %16s", cell(column, step).c_str());
+        std::printf("%s\n", step.contains("failed") ? ("  " + text(step["failed"])).c_str() : "");
+    }
+}
+
+} // namespace
+
+bool printBench(const Json& report)
+{
+    const Json &machine = report["machine"], &gim = report["gim"];
+    std::printf("%s, %s cores, %.1f GB, %s, %s, load %s\n", text(machine["cpu"]).c_str(),
+                text(machine["cores"]).c_str(), machine["memory"].get<double>() / 1e9,
+                text(machine["os"]).c_str(), text(machine["compiler"]).c_str(),
+                text(machine["load"]).c_str());
+    std::printf("%s: %s faces -> %s bytes, %s x %s samples, %s triangles",
+                text(report["mesh"]["name"]).c_str(), text(report["mesh"]["faces"]).c_str(),
+                text(gim["bytes"]).c_str(), text(gim["grid"]).c_str(), text(gim["grid"]).c_str(),
+                text(gim["triangles"]).c_str());
+    if (gim["psnr"].is_number()) std::printf(", PSNR %.2f dB", gim["psnr"].get<double>());
+    std::printf("\n");
+
+    printSpread(report, "decode", "decode, ms, one thread");
+    printSpread(report, "decode_mesh", "decode the whole mesh, ms");
+    printSpread(report, "encode", "encode, ms, one thread");
+    printSpread(report, "gim_stages_ms", "  stages of gim");
+    printMemory(report);
+    printSteps(report["scaling"], "the mesh with more faces (bytes in MB)");
+    printSteps(report["decode_scaling"], "decoding larger grids");
+    for (const Json& peer : report["peers"])
+        if (peer.contains("note"))
+            std::printf("%s: %s\n", text(peer["title"]).c_str(), text(peer["note"]).c_str());
+    return std::fflush(stdout) == 0;
+}
+
+} // namespace gimg::gimrd
