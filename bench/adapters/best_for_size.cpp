@@ -11,6 +11,7 @@ namespace {
 
 constexpr int kRoughSamples = 20000, kFineSamples = 200000;
 constexpr std::size_t kFinalists = 3;
+constexpr double kFinalistsMargin = 0.3; ///< dB below the best by which one is no finalist
 constexpr int kDownhill = 2; ///< numbers of bits in a row without a new best before the search turns back
 
 using Bytes = std::vector<std::uint8_t>;
@@ -42,6 +43,8 @@ public:
                              std::to_string(codec_.fewestBits) + " bits or more"};
         std::stable_sort(candidates_.begin(), candidates_.end(),
                          [](const Candidate& a, const Candidate& b) { return a.psnr > b.psnr; });
+        std::erase_if(candidates_, [&, highest = candidates_.empty() ? 0 : candidates_[0].psnr](
+                                       const Candidate& c) { return c.psnr < highest - kFinalistsMargin; });
         if (candidates_.size() > kFinalists) candidates_.resize(kFinalists);
         Coded best;
         double bestPsnr = -1;
