@@ -118,10 +118,10 @@ Json medians(Bench& bench, const std::string& section)
     return result;
 }
 
-// A child's peak counts what this process held when it was started: a figure not above that says nothing.
-Json peakOf(std::int64_t peakBytes, std::int64_t residentBefore)
+// See ownBytes(): a peak not above that says nothing.
+Json peakOf(std::int64_t peakBytes, std::int64_t ownBefore)
 {
-    return peakBytes > residentBefore ? Json(peakBytes) : Json(nullptr);
+    return peakBytes > ownBefore ? Json(peakBytes) : Json(nullptr);
 }
 
 // The larger of what was there and what is new.
@@ -152,14 +152,14 @@ Result<ToolRun> runTool(const std::string& name, std::vector<std::string> argume
     const Path self = std::filesystem::read_symlink("/proc/self/exe", failed);
     arguments.insert(arguments.begin(), (self.parent_path() / name).string());
     std::string out;
-    const std::int64_t resident = residentBytes();
+    const std::int64_t own = ownBytes();
     const Result<Ended> ended = runProgram(arguments, [&](const std::string& line) { out += line; });
     if (!ended) return ended.error();
     if (ended->code != 0) {
         const bool unreachable = ended->code == cli::Unreachable;
         return Error{unreachable ? ErrorKind::TargetUnreachable : ErrorKind::CodecFailure, messageOf(*ended)};
     }
-    ToolRun run{Json::parse(out, nullptr, false), peakOf(ended->peakBytes, resident)};
+    ToolRun run{Json::parse(out, nullptr, false), peakOf(ended->peakBytes, own)};
     return run;
 }
 
@@ -232,7 +232,7 @@ std::optional<PeerRun> timePeer(Bench& bench, const CoderProgram& peer, const Pa
 {
     if (bench.broken.contains(section + ' ' + peer.name)) return std::nullopt;
     progress(section + ": " + peer.title);
-    const std::int64_t resident = residentBytes();
+    const std::int64_t own = ownBytes();
     Result<CoderTimes> times = timeWith(peer, input, bench.options.bytes, runs + 1);
     if (!times) {
         bench.broken.insert(section + ' ' + peer.name);
@@ -241,7 +241,7 @@ std::optional<PeerRun> timePeer(Bench& bench, const CoderProgram& peer, const Pa
     }
     times->encode.erase(times->encode.begin());
     times->decode.erase(times->decode.begin());
-    return PeerRun{*times, peakOf(times->peakBytes, resident)};
+    return PeerRun{*times, peakOf(times->peakBytes, own)};
 }
 
 void recordAll(Bench& bench, const std::string& section, const std::string& key,

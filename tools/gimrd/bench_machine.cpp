@@ -53,12 +53,10 @@ nlohmann::ordered_json describeMachine()
     return machine;
 }
 
-std::int64_t residentBytes()
+std::int64_t ownBytes()
 {
-    std::ifstream in("/proc/self/statm");
-    std::int64_t size = 0, resident = 0;
-    in >> size >> resident;
-    return in ? resident * ::sysconf(_SC_PAGESIZE) : 0;
+    const std::string kilobytes = valueIn("/proc/self/status", "RssAnon", ':');
+    return 1024 * std::int64_t{std::atoi(kilobytes.c_str())};
 }
 
 } // namespace gimg::gimrd

@@ -12,6 +12,16 @@ using Json = nlohmann::ordered_json;
 
 std::string text(const Json& value) { return value.is_string() ? value.get<std::string>() : value.dump(); }
 
+std::string list(const Json& words)
+{
+    std::string all;
+    for (const Json& word : words) {
+        if (!all.empty()) all += ' ';
+        all += text(word);
+    }
+    return all;
+}
+
 // "gim_positions_ms" reads "gim positions".
 std::string label(std::string key)
 {
@@ -108,6 +118,11 @@ bool printBench(const Json& report)
     for (const Json& peer : report["peers"])
         if (peer.contains("note"))
             std::printf("%s: %s\n", text(peer["title"]).c_str(), text(peer["note"]).c_str());
+    for (const Json& peer : report["skipped"])
+        std::printf("%s: skipped, not installed: %s\n", text(peer["title"]).c_str(),
+                    list(peer["missing"]).c_str());
+    for (const Json& failure : report["failed"])
+        std::printf("%s: failed: %s\n", text(failure["section"]).c_str(), text(failure["message"]).c_str());
     return std::fflush(stdout) == 0;
 }
 
