@@ -25,7 +25,8 @@ std::string list(const Json& words)
 // "gim_positions_ms" reads "gim positions".
 std::string label(std::string key)
 {
-    if (key.ends_with("_ms")) key.resize(key.size() - 3);
+    for (const char* unit : {"_ms", "_bytes"})
+        if (key.ends_with(unit)) key.resize(key.size() - std::string(unit).size());
     for (char& c : key)
         if (c == '_') c = ' ';
     return key;
@@ -58,11 +59,9 @@ void printSpread(const Json& report, const char* section, const char* title)
 
 void printMemory(const Json& report)
 {
-    std::printf("\n%-28s %10s\n", "memory, MB", "");
+    std::printf("\nmemory, MB\n");
     for (const auto& [key, value] : report["memory"].items()) {
-        std::string name = label(key);
-        name.resize(name.size() - std::string(" bytes").size());
-        std::printf("  %-26s %10s\n", name.c_str(), megabytes(value).c_str());
+        std::printf("  %-26s %10s\n", label(key).c_str(), megabytes(value).c_str());
     }
 }
 
@@ -72,6 +71,15 @@ std::string cell(const std::string& key, const Json& step)
     if (key.ends_with("_ms")) return milliseconds(step[key]);
     if (key.ends_with("_bytes")) return megabytes(step[key]);
     return text(step[key]);
+}
+
+// Adds a cell to each line, right-aligned and two spaces from the one before.
+void appendColumn(std::vector<std::string>& lines, const std::vector<std::string>& cells)
+{
+    size_t width = 0;
+    for (const std::string& text : cells) width = std::max(width, text.size());
+    for (size_t k = 0; k < cells.size(); ++k)
+        lines[k] += std::string(2 + width - cells[k].size(), ' ') + cells[k];
 }
 
 // A line for each step, a column for each number that any step has.
@@ -84,11 +92,15 @@ void printSteps(const Json& steps, const char* title)
             if (key != "failed" && std::find(columns.begin(), columns.end(), key) == columns.end())
                 columns.push_back(key);
     std::printf("\n%s\n", title);
-    for (const std::string& column : columns) std::printf("  %16s", label(column).c_str());
-    std::printf("\n");
-    for (const Json& step : steps) {
-        for (const std::string& column : columns) std::printf("  %16s", cell(column, step).c_str());
-        std::printf("%s\n", step.contains("failed") ? ("  " + text(step["failed"])).c_str() : "");
+    std::vector<std::string> lines(steps.size() + 1);
+    for (const std::string& column : columns) {
+        std::vector<std::string> cells = {label(column)};
+        for (const Json& step : steps) cells.push_back(cell(column, step));
+        appendColumn(lines, cells);
+    }
+    for (size_t k = 0; k < lines.size(); ++k) {
+        const bool broken = k > 0 && steps[k - 1].contains("failed");
+        std::printf("%s%s\n", lines[k].c_str(), broken ? "  failed" : "");
     }
 }
 
@@ -111,15 +123,15 @@ bool printBench(const Json& report)
     printSpread(report, "decode", "decode, ms, one thread");
     printSpread(report, "decode_mesh", "decode the whole mesh, ms");
     printSpread(report, "encode", "encode, ms, one thread");
-    printSpread(report, "gim_stages_ms", "  stages of gim");
+    printSpread(report, "gim_stages_ms", "stages of gim, ms");
     printMemory(report);
-    printSteps(report["scaling"], "the mesh with more faces (bytes in MB)");
-    printSteps(report["decode_scaling"], "decoding larger grids");
+    printSteps(report["scaling"], "the mesh with more faces, ms and MB");
+    printSteps(report["decode_scaling"], "decoding larger grids, ms");
     for (const Json& peer : report["peers"])
         if (peer.contains("note"))
-            std::printf("%s: %s\n", text(peer["title"]).c_str(), text(peer["note"]).c_str());
+            std::printf("%s: %s\n", text(peer["codec"]).c_str(), text(peer["note"]).c_str());
     for (const Json& peer : report["skipped"])
-        std::printf("%s: skipped, not installed: %s\n", text(peer["title"]).c_str(),
+        std::printf("%s: skipped, not installed: %s\n", text(peer["name"]).c_str(),
                     list(peer["missing"]).c_str());
     for (const Json& failure : report["failed"])
         std::printf("%s: failed: %s\n", text(failure["section"]).c_str(), text(failure["message"]).c_str());
