@@ -49,26 +49,12 @@ ReadStatus decodeWavelet(const ImageHeader& header, const std::uint32_t* classes
     const std::uint32_t grid = header.grid;
     const std::size_t samples = samplesOf(grid);
     QuantizedImage image;
-    image.grid = grid;
-    for (auto& plane : image.detail) {
-        plane = arena.take<std::int32_t>(samples);
-        if (plane == nullptr) return ReadStatus::Misuse;
-        std::memset(plane, 0, samples * sizeof *plane);
-    }
-    auto* rows = arena.take<std::int32_t>(rowScratchOf(grid));
-    auto* models = arena.take<CoefficientModels>(1);
+    const ReadStatus status = decodeCoefficients(header, arena, &image);
+    if (status != ReadStatus::Ok) return status;
     auto* workA = arena.take<double>(samples);
     auto* workB = arena.take<double>(coarseSamplesOf(grid));
     auto* ring = arena.take<double>(2 * std::size_t{borderSize(grid)});
-    if (rows == nullptr || models == nullptr || workA == nullptr || workB == nullptr || ring == nullptr)
-        return ReadStatus::Misuse;
-
-    RangeDecoder decoder(header.samples);
-    new (models) CoefficientModels();
-    const PlainPick pick;
-    const NothingKnown nothing;
-    codeImage(decoder, *models, image, pick, nothing, rows);
-    if (!decoder.finished()) return ReadStatus::Corrupt;
+    if (workA == nullptr || workB == nullptr || ring == nullptr) return ReadStatus::Misuse;
 
     const Dequantizer dequantize = Dequantizer::fromByte(header.step, header.shifts);
     for (unsigned c = 0; c < kComponents; ++c) {
@@ -198,6 +184,27 @@ ReadStatus readImageHeader(format::ByteSpan content, ImageHeader* header)
     if (header->coding == GIM_CODING_RAW12 && header->samples.size != raw12Size(header->grid))
         return ReadStatus::Corrupt;
     return ReadStatus::Ok;
+}
+
+ReadStatus decodeCoefficients(const ImageHeader& header, Arena& arena, QuantizedImage* image)
+{
+    const std::size_t samples = samplesOf(header.grid);
+    image->grid = header.grid;
+    for (auto& plane : image->detail) {
+        plane = arena.take<std::int32_t>(samples);
+        if (plane == nullptr) return ReadStatus::Misuse;
+        std::memset(plane, 0, samples * sizeof *plane);
+    }
+    auto* rows = arena.take<std::int32_t>(rowScratchOf(header.grid));
+    auto* models = arena.take<CoefficientModels>(1);
+    if (rows == nullptr || models == nullptr) return ReadStatus::Misuse;
+
+    RangeDecoder decoder(header.samples);
+    new (models) CoefficientModels();
+    const PlainPick pick;
+    const NothingKnown nothing;
+    codeImage(decoder, *models, *image, pick, nothing, rows);
+    return decoder.finished() ? ReadStatus::Ok : ReadStatus::Corrupt;
 }
 
 std::uint64_t imageWorkspace(const ImageHeader& header)

@@ -33,6 +33,10 @@ std::uint64_t imageWorkspace(const ImageHeader& header);
 
 class Arena;
 
+/// The first half of decoding a wavelet image: its quantised coefficients, from what encodeCoefficients()
+/// made. The planes lie in the arena.
+ReadStatus decodeCoefficients(const ImageHeader& header, Arena& arena, QuantizedImage* image);
+
 /// Decodes an image of three components into 3 grid^2 floats.
 /// @param classes  borderClasses() of the grid, or nullptr not to fuse
 ReadStatus decodeImage(const ImageHeader& header, const std::uint32_t* classes, bool diffuse, Arena& arena,

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 #include <cstdlib>
+#include <optional>
 #include <tuple>
 
 namespace gimg::gimrd {
@@ -34,7 +35,7 @@ std::string lastLine(std::string text)
 // Runs the adapter; each line it prints must be a JSON object, which `take` reads. Anything that `take`
 // misses in it, or names in its result, is a breach of the protocol; the first one is reported.
 Status talk(const CoderProgram& coder, std::vector<std::string> arguments,
-            const std::function<std::string(const Json&)>& take)
+            const std::function<std::string(const Json&)>& take, std::int64_t* peakBytes = nullptr)
 {
     arguments.insert(arguments.begin(), coder.program.string());
     std::string breach;
@@ -53,6 +54,7 @@ Status talk(const CoderProgram& coder, std::vector<std::string> arguments,
         return failure(coder, howItEnded(ended->code) + (said.empty() ? "" : ": " + said));
     }
     if (!breach.empty()) return failure(coder, breach);
+    if (peakBytes != nullptr) *peakBytes = ended->peakBytes;
     return Done{};
 }
 
@@ -173,6 +175,29 @@ Status encodeWith(const CoderProgram& coder, const std::filesystem::path& input,
         done(answer.coded);
         return std::string();
     });
+}
+
+Result<CoderTimes> timeWith(const CoderProgram& coder, const std::filesystem::path& input, std::size_t bytes,
+                            int runs)
+{
+    std::optional<CoderTimes> times;
+    std::int64_t peakBytes = 0;
+    const std::vector<std::string> arguments = {
+        "time", input.string(), "--bytes", std::to_string(bytes), "--runs", std::to_string(runs)};
+    const Status talked = talk(
+        coder, arguments,
+        [&](const Json& json) {
+            times =
+                CoderTimes{json.at("bytes"), json.at("encode_ms"), json.at("decode_ms"), json.at("note"), 0};
+            return std::string();
+        },
+        &peakBytes);
+    if (!talked) return talked.error();
+    const auto wanted = static_cast<size_t>(runs);
+    if (!times || times->encode.size() != wanted || times->decode.size() != wanted)
+        return failure(coder, "did not give the times of " + std::to_string(runs) + " runs");
+    times->peakBytes = peakBytes;
+    return *times;
 }
 
 } // namespace gimg::gimrd

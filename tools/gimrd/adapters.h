@@ -5,6 +5,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <functional>
 #include <string>
@@ -49,5 +50,18 @@ struct CodedFile
 Status encodeWith(const CoderProgram& coder, const std::filesystem::path& input,
                   const std::filesystem::path& out, const std::vector<std::size_t>& sizes, int grid,
                   int threads, const std::function<void(const CodedFile&)>& done);
+
+/// Times of coding an input whole, in milliseconds, one a run.
+struct CoderTimes
+{
+    std::size_t bytes = 0; ///< of the file
+    std::vector<double> encode, decode;
+    std::string note;           ///< what the times include that others do not
+    std::int64_t peakBytes = 0; ///< see Ended
+};
+
+/// Runs `time` of the protocol. Errors: as encodeWith.
+Result<CoderTimes> timeWith(const CoderProgram& coder, const std::filesystem::path& input, std::size_t bytes,
+                            int runs);
 
 } // namespace gimg::gimrd

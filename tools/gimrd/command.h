@@ -13,6 +13,7 @@ struct Command
     std::function<int()> run;
 };
 
+Command addBench(CLI::App& app);
 Command addCompare(CLI::App& app);
 Command addSweep(CLI::App& app);
 

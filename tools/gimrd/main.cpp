@@ -9,7 +9,7 @@ int main(int argc, char** argv)
     CLI::App app("Measures surfaces against each other, and rate against distortion.", "gimrd");
     app.set_version_flag("--version", GIMG_VERSION);
     app.require_subcommand(1);
-    const Command commands[] = {addCompare(app), addSweep(app)};
+    const Command commands[] = {addCompare(app), addSweep(app), addBench(app)};
 
     if (const std::optional<int> exit = gimg::cli::parse(app, argc, argv)) return *exit;
     for (const Command& command : commands)
