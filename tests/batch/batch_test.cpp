@@ -82,11 +82,12 @@ protected:
     // A process that `parent` started; 0 if there is none yet.
     static pid_t childOf(pid_t parent)
     {
-        const fs::path tasks = "/proc/" + std::to_string(parent) + "/task";
         std::error_code error;
-        for (const auto& task : fs::directory_iterator(tasks, error)) {
-            pid_t child = 0;
-            if (std::ifstream(task.path() / "children") >> child) return child;
+        for (const auto& process : fs::directory_iterator("/proc", error)) {
+            std::ifstream status(process.path() / "status");
+            for (std::string word; status >> word;)
+                if (word == "PPid:" && status >> word && word == std::to_string(parent))
+                    return std::stoi(process.path().filename().string());
         }
         return 0;
     }

@@ -29,6 +29,13 @@ int cores()
     return sched_getaffinity(0, sizeof set, &set) == 0 ? CPU_COUNT(&set) : 1;
 }
 
+std::string ownProgram()
+{
+    std::error_code error;
+    const std::filesystem::path program = std::filesystem::read_symlink("/proc/self/exe", error);
+    return error ? "gimenc" : program.string(); // which PATH may know
+}
+
 std::uint64_t sizeOf(const std::string& path)
 {
     std::error_code error;
@@ -107,7 +114,8 @@ public:
     int run()
     {
         std::vector<std::thread> workers;
-        for (int i = 0; i < options_.jobs; ++i) workers.emplace_back([this] { work(); });
+        const size_t count = std::min(jobs_.size(), static_cast<size_t>(options_.jobs));
+        for (size_t i = 0; i < count; ++i) workers.emplace_back([this] { work(); });
         showUntilAllEnded();
         for (std::thread& worker : workers) worker.join();
         status_.wipe();
@@ -177,7 +185,7 @@ private:
     bool quiet_;
     StatusLine status_;
     int threads_; ///< for each job that does not say; 0: one a core
-    std::string program_ = std::filesystem::read_symlink("/proc/self/exe").string();
+    std::string program_ = ownProgram();
     Progress progress_;
 };
 
