@@ -84,6 +84,7 @@ Outcome runJob(const std::string& program, const Arguments& a, int threads)
     if (ended && ended->code > kKilled)
         error = a.input + ": ended by signal " + std::to_string(ended->code - kKilled) + " (" +
                 strsignal(ended->code - kKilled) + ")";
+    if (error.empty()) error = a.input + ": ended with status " + std::to_string(ended->code);
     // A process that failed by itself has done this; one that was killed could not.
     recordFailure(a, input, error);
     return {Outcome::Failed, error};
