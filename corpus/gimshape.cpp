@@ -38,7 +38,8 @@ int main(int argc, char** argv)
 {
     std::string name, path;
     Options options;
-    CLI::App app{"Writes a surface of known topology, area and volume."};
+    CLI::App app{"Writes a surface of known topology, area and volume.", "gimshape"};
+    app.set_version_flag("--version", GIMG_VERSION);
     app.add_option("NAME", name, "Which surface")->required()->check(CLI::IsMember(kShapes));
     app.add_option("OUT", path, "The file to write: .ply, .obj, .off or .stl")->required();
     app.add_option("--resolution", options.resolution, "Segments along the surface's shortest feature")

@@ -3,12 +3,15 @@
 #include <CLI/CLI.hpp>
 #include <nlohmann/json.hpp>
 
+#include <charconv>
+#include <cstddef>
 #include <cstdint>
 #include <cstdio>
 #include <fstream>
 #include <iostream>
 #include <optional>
 #include <string>
+#include <system_error>
 #include <utility>
 #include <vector>
 
@@ -45,6 +48,29 @@ inline std::optional<int> parse(CLI::App& app, int argc, char** argv)
         return fail(app.get_name(), Usage, std::string(error.what()) + " (try --help)");
     }
     return std::nullopt;
+}
+
+/// One of `count` equal shares of a list, for as many processes or machines: I, I + N, I + 2N, ... of I/N.
+struct Part
+{
+    std::size_t index = 1; ///< from 1
+    std::size_t count = 1;
+
+    /// Whether the entry at `position`, from 0, is in this share; each is in exactly one of the `count`.
+    bool has(std::size_t position) const { return position % count == index - 1; }
+};
+
+/// Reads "I/N" with 1 <= I <= N; nothing if it is anything else.
+inline std::optional<Part> parsePart(const std::string& text)
+{
+    Part part;
+    const char* const end = text.data() + text.size();
+    const auto index = std::from_chars(text.data(), end, part.index);
+    if (index.ec != std::errc() || index.ptr == end || *index.ptr != '/') return std::nullopt;
+    const auto count = std::from_chars(index.ptr + 1, end, part.count);
+    if (count.ec != std::errc() || count.ptr != end || part.index < 1 || part.index > part.count)
+        return std::nullopt;
+    return part;
 }
 
 /// The bytes of a file; nothing if it cannot be read.

@@ -1,0 +1,129 @@
+#include "arguments.h"
+
+#include <algorithm>
+#include <charconv>
+#include <cmath>
+
+namespace gimg::gimenc {
+namespace {
+
+std::string shortest(double number)
+{
+    char text[64];
+    return {text, std::to_chars(text, text + sizeof text, number).ptr};
+}
+
+} // namespace
+
+void addOptions(CLI::App& app, Arguments& a)
+{
+    const CLI::Validator positive(
+        [](const std::string& text) {
+            double number = 0;
+            const bool good = CLI::detail::lexical_cast(text, number) && number > 0 && std::isfinite(number);
+            return good ? std::string() : text + " is not a positive number";
+        },
+        "");
+    app.add_option("--grid", a.grid, "samples a side, 2^j + 1 (default: 257, more if the cut needs it)");
+    app.add_option("--lowest", a.lowest,
+                   "samples a side of the lowest level of detail, 2^l + 1 (default: 33, or as needed)");
+    auto* target = app.add_option_group("target", "what the file is made for; exactly one");
+    target->add_option("--bytes", a.bytes, "size of the whole file, never exceeded")->check(positive);
+    target->add_option("--psnr", a.psnr, "surface PSNR in dB, met within 0.5 dB above")->check(positive);
+    target->add_option("--raw", a.raw, "no compression loss but 12-bit integers, or none at all with float")
+        ->check(CLI::IsMember({"12", "float"}));
+    target->require_option(0, 1);
+    app.add_option("--normals", a.normals, "add a normal image of this many samples a side, 2^k + 1");
+    app.add_option("--component", a.component, "of several components take the largest")
+        ->check(CLI::IsMember({"largest"}));
+    app.add_option("--weld", a.weld,
+                   "merge vertices at equal positions: auto (where that harms nothing), always, never")
+        ->check(CLI::IsMember({"auto", "always", "never"}));
+    app.add_option("--threads", a.threads,
+                   "threads to use (default: one a core); the file does not depend on it")
+        ->check(positive);
+    app.add_option("--json", a.json, "write a report to this file, or - for standard output");
+    app.add_flag("--resume", a.resume,
+                 "keep a record in OUTPUT.json and do nothing if it says that OUTPUT is made already");
+    app.add_flag("--quiet", a.quiet, "print nothing but errors");
+}
+
+void addFiles(CLI::App& app, Arguments& a)
+{
+    app.add_option("INPUT", a.input, "mesh to encode");
+    app.add_option("OUTPUT", a.output, "file to write, .gim");
+}
+
+bool hasTarget(const Arguments& a) { return a.bytes || a.psnr || !a.raw.empty(); }
+
+std::optional<std::string> missing(const Arguments& a)
+{
+    if (a.input.empty()) return "INPUT is required";
+    if (a.output.empty()) return "OUTPUT is required";
+    if (!hasTarget(a)) return "one of --bytes, --psnr and --raw is required";
+    return std::nullopt;
+}
+
+Result<Arguments> parseLine(const std::vector<std::string>& words, const Arguments& defaults)
+{
+    Arguments a = defaults;
+    a.bytes.reset(), a.psnr.reset(), a.raw.clear();
+    CLI::App app("", "gimenc");
+    app.set_help_flag(); // a line that asks for help is a mistake
+    addOptions(app, a);
+    addFiles(app, a);
+    try {
+        app.parse(std::vector<std::string>(words.rbegin(), words.rend()));
+    } catch (const CLI::ParseError& error) {
+        return Error{ErrorKind::BadArgument, error.what()};
+    }
+    if (!hasTarget(a)) a.bytes = defaults.bytes, a.psnr = defaults.psnr, a.raw = defaults.raw;
+    if (!a.json.empty()) return Error{ErrorKind::BadArgument, "--json: the report of a line is OUTPUT.json"};
+    if (const auto what = missing(a)) return Error{ErrorKind::BadArgument, *what};
+    return a;
+}
+
+std::vector<std::string> fileOptions(const Arguments& a)
+{
+    std::vector<std::string> words;
+    const auto add = [&](const char* name, const std::string& value) {
+        words.push_back(name);
+        words.push_back(value);
+    };
+    if (a.bytes) add("--bytes", std::to_string(*a.bytes));
+    if (a.psnr) add("--psnr", shortest(*a.psnr));
+    if (!a.raw.empty()) add("--raw", a.raw);
+    if (a.grid != 0) add("--grid", std::to_string(a.grid));
+    if (a.lowest != 0) add("--lowest", std::to_string(a.lowest));
+    if (a.normals != 0) add("--normals", std::to_string(a.normals));
+    if (!a.component.empty()) add("--component", a.component);
+    if (a.weld != "auto") add("--weld", a.weld);
+    return words;
+}
+
+ReadOptions readOptions(const Arguments& a)
+{
+    const Weld weld = a.weld == "always" ? Weld::Always : a.weld == "never" ? Weld::Never : Weld::Auto;
+    return {weld, !a.component.empty()};
+}
+
+EncodeOptions encodeOptions(const Arguments& a)
+{
+    EncodeOptions options;
+    options.grid = a.grid;
+    options.lowest = a.lowest;
+    options.normals = a.normals;
+    options.threads = a.threads;
+    if (a.bytes) {
+        options.target = EncodeTarget::Bytes;
+        options.bytes = *a.bytes;
+    } else if (a.psnr) {
+        options.target = EncodeTarget::Psnr;
+        options.psnr = *a.psnr;
+    } else {
+        options.target = a.raw == "12" ? EncodeTarget::Raw12 : EncodeTarget::RawFloat;
+    }
+    return options;
+}
+
+} // namespace gimg::gimenc

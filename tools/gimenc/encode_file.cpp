@@ -1,0 +1,158 @@
+#include "encode_file.h"
+
+#include "record.h"
+#include "status_line.h"
+#include "whole_file.h"
+
+#include <gim.h>
+
+#include <chrono>
+#include <cmath>
+#include <filesystem>
+
+namespace gimg::gimenc {
+namespace {
+
+struct Failure
+{
+    cli::Exit exit = cli::Done;
+    std::string message;
+};
+
+struct Made
+{
+    EncodedMesh encoded;
+    nlohmann::ordered_json report;
+};
+
+cli::Exit exitFor(ErrorKind kind)
+{
+    if (kind == ErrorKind::TargetUnreachable) return cli::Unreachable;
+    return kind == ErrorKind::BadArgument ? cli::Usage : cli::Refused;
+}
+
+double secondsSince(std::chrono::steady_clock::time_point start)
+{
+    return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
+}
+
+nlohmann::ordered_json report(const EncodedMesh& encoded, double read, double total)
+{
+    gim_info info{};
+    info.size = sizeof info;
+    gim_probe(encoded.file.data(), encoded.file.size(), nullptr, &info);
+    nlohmann::ordered_json json;
+    json["vertices"] = encoded.topology.vertices;
+    json["faces"] = encoded.topology.faces;
+    json["genus"] = encoded.topology.genus;
+    json["boundaries"] = encoded.topology.boundaries;
+    json["grid"] = encoded.grid;
+    json["lowest"] = encoded.lowest;
+    json["bytes"] = {{"total", encoded.file.size()},
+                     {"container", info.container_bytes},
+                     {"sideband", info.seam_bytes},
+                     {"geometry", info.geometry_bytes},
+                     {"normals", info.normal_bytes}};
+    json["psnr"] = nullptr; // where the surfaces agree there is no finite value
+    if (std::isfinite(encoded.psnr)) json["psnr"] = encoded.psnr;
+    json["stretch_efficiency"] = encoded.stretchEfficiency;
+    json["cut"] = {{"nodes", encoded.cutNodes}, {"paths", encoded.cutPaths}, {"length", encoded.cutLength}};
+    json["seconds"] = {{"read", read},
+                       {"cut", encoded.seconds.cut},
+                       {"parameterize", encoded.seconds.parameterize},
+                       {"sample", encoded.seconds.sample},
+                       {"code", encoded.seconds.code},
+                       {"total", total}};
+    json["warnings"] = encoded.warnings;
+    return json;
+}
+
+Failure make(const Arguments& a, Made& made)
+{
+    const auto start = std::chrono::steady_clock::now();
+    StatusLine progress(!a.quiet);
+    const auto show = [&](const char* stage, double fraction) {
+        char text[64];
+        std::snprintf(text, sizeof text, "%-14s %3.0f %%", stage, 100 * fraction);
+        progress.show(text);
+    };
+    show("read", 0);
+    Result<MeshFile> read = readMesh(a.input, readOptions(a));
+    if (!read) {
+        const bool several = read.error().kind == ErrorKind::SeveralComponents;
+        return {cli::Refused,
+                read.error().message + (several ? "; --component largest takes the largest" : "")};
+    }
+    const double readSeconds = secondsSince(start);
+
+    EncodeOptions options = encodeOptions(a);
+    options.progress = show;
+    Result<EncodedMesh> encoded = encodeMesh(read->mesh, options);
+    if (!encoded) return {exitFor(encoded.error().kind), a.input + ": " + encoded.error().message};
+    std::vector<std::string> notes = warnings(read->report);
+    notes.insert(notes.end(), encoded->warnings.begin(), encoded->warnings.end());
+    encoded->warnings = std::move(notes);
+    made.encoded = std::move(*encoded);
+    made.report = report(made.encoded, readSeconds, secondsSince(start));
+    return {};
+}
+
+void tell(const Arguments& a, const EncodedMesh& encoded)
+{
+    for (const std::string& warning : encoded.warnings) std::cerr << "gimenc: " << warning << '\n';
+    if (a.json == "-") return;
+    std::printf("%s: %d faces, genus %d, %d boundaries -> %s: %zu bytes, %d x %d samples, PSNR %.2f dB\n",
+                a.input.c_str(), encoded.topology.faces, encoded.topology.genus, encoded.topology.boundaries,
+                a.output.c_str(), encoded.file.size(), encoded.grid, encoded.grid, encoded.psnr);
+}
+
+Failure writeMade(const Arguments& a, const Made& made, const std::optional<Contents>& input)
+{
+    const std::vector<std::uint8_t>& file = made.encoded.file;
+    if (a.resume) {
+        if (const auto what = recordDone(a, *input, file, made.report)) return {cli::Refused, *what};
+    } else if (!writeWhole(a.output, file.data(), file.size())) {
+        return {cli::Refused, a.output + ": cannot be written"};
+    }
+    if (!a.json.empty() && !cli::writeJson(a.json, made.report))
+        return {cli::Refused, a.json + ": cannot be written"};
+    return {};
+}
+
+// `input` tells an input that changes while it is read from what is encoded: it was identified before.
+Failure makeAndWrite(const Arguments& a, const std::optional<Contents>& input)
+{
+    std::error_code error;
+    if (a.resume && !input) return {cli::Refused, a.input + ": cannot be read"};
+    const std::filesystem::path folder = std::filesystem::path(a.output).parent_path();
+    if (a.resume && !folder.empty() && !std::filesystem::is_directory(folder) &&
+        !std::filesystem::create_directories(folder, error) && error)
+        return {cli::Refused, folder.string() + ": cannot be created"};
+
+    Made made;
+    if (Failure failure = make(a, made); failure.exit != cli::Done) return failure;
+    if (Failure failure = writeMade(a, made, input); failure.exit != cli::Done) return failure;
+    if (!a.quiet) tell(a, made.encoded);
+    return {};
+}
+
+} // namespace
+
+int encodeFile(const Arguments& a)
+{
+    std::error_code ignored;
+    if (std::filesystem::equivalent(a.input, a.output, ignored))
+        return cli::fail("gimenc", cli::Usage, a.output + ": is the input itself");
+    std::optional<Contents> input;
+    if (a.resume) input = contentsOf(a.input);
+    if (input && isFinished(a, *input)) {
+        if (!a.quiet) std::printf("%s: already there\n", a.output.c_str());
+        return cli::Done;
+    }
+    const Failure failure = makeAndWrite(a, input);
+    if (failure.exit == cli::Done) return cli::Done;
+    if (a.resume) recordFailure(a, input, failure.message);
+    return cli::fail("gimenc", failure.exit, failure.message);
+}
+
+} // namespace gimg::gimenc
