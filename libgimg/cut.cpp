@@ -22,7 +22,7 @@ public:
     {
     }
 
-    CutGraph run()
+    CutGraph run(std::span<const int> extrema)
     {
         const int seed = extremalFace();
         openFaces(seed);
@@ -33,7 +33,9 @@ public:
         for (int round = 0; round < 2; ++round)
             for (CutPath& path : cut.paths)
                 if (!path.boundary) straighten(path);
-        return cut;
+        if (extrema.empty()) return cut;
+        for (int extremum : extrema) extendTo(extremum);
+        return extractPaths();
     }
 
 private:
@@ -297,6 +299,35 @@ private:
         return result;
     }
 
+    // Opens the shortest path from the cut to the vertex; the cut gains a branch and stays valid.
+    void extendTo(int extremum)
+    {
+        if (degree_[extremum] > 0) return;
+        std::vector<int> touched = {extremum};
+        DistanceQueue queue;
+        distance_[extremum] = 0;
+        queue.push({0.0, extremum});
+        int reached = -1;
+        while (!queue.empty() && reached < 0) {
+            const auto [d, v] = queue.top();
+            queue.pop();
+            if (d > distance_[v]) continue;
+            if (degree_[v] > 0) reached = v;
+            forEdgesAt(v, [&](int h, int w) {
+                const double through = d + edgeLength(h);
+                if (through >= distance_[w]) return;
+                if (distance_[w] == kInfinity) touched.push_back(w);
+                distance_[w] = through;
+                parent_[w] = v;
+                queue.push({through, w});
+            });
+        }
+        std::vector<int> path = {reached};
+        while (path.back() != extremum) path.push_back(parent_[path.back()]);
+        setPathCut(path, true);
+        for (int v : touched) distance_[v] = kInfinity, parent_[v] = -1;
+    }
+
     const Mesh& mesh_;
     const Halfedges he_;
     std::vector<bool> inCut_;      // per halfedge
@@ -326,6 +357,6 @@ double cutLength(const Mesh& mesh, const CutGraph& cut)
     return length;
 }
 
-CutGraph cutToDisk(const Mesh& mesh) { return Cutter(mesh).run(); }
+CutGraph cutToDisk(const Mesh& mesh, std::span<const int> extrema) { return Cutter(mesh).run(extrema); }
 
 } // namespace gimg

@@ -1,12 +1,10 @@
 #include "gimg/encode.h"
 
 #include "codec/encode.h"
-#include "gimg/border.h"
-#include "gimg/cut.h"
 #include "gimg/decode.h"
 #include "gimg/distance.h"
-#include "gimg/flatten.h"
 #include "gimg/sample.h"
+#include "gimg/unfold.h"
 
 #include <tbb/global_control.h>
 
@@ -16,6 +14,7 @@
 #include <cstdio>
 #include <memory>
 #include <optional>
+#include <string_view>
 
 namespace gimg {
 namespace {
@@ -235,39 +234,39 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     out.topology = topology(mesh);
 
     stage("cut", 0);
-    const CutGraph cut = cutToDisk(mesh);
+    double cutSeconds = 0;
+    Result<Unfolded> unfolded =
+        unfold(mesh, {options.grid, options.lowest}, [&](const char* name, double fraction) {
+            if (cutSeconds == 0 && std::string_view(name) != "cut") cutSeconds = watch.lap();
+            stage(name, fraction);
+        });
+    if (!unfolded) return unfolded.error();
+    const auto& [cut, extrema, square, map] = *unfolded;
     out.cutNodes = cut.nodeCount();
     out.cutPaths = static_cast<int>(cut.paths.size());
+    out.cutExtrema = extrema;
     out.cutLength = cutLength(mesh, cut);
-    Result<SquareDisk> square = layOutBorder(mesh, cut, {options.grid, options.lowest});
-    if (!square) return square.error();
-    out.grid = square->grid;
-    out.lowest = square->lowest;
+    out.grid = square.grid;
+    out.lowest = square.lowest;
     if (options.grid == 0 && options.lowest == 0 && out.grid > BorderOptions::kDefaultGrid)
         out.warnings.push_back("the cut has " + std::to_string(out.cutPaths) + " paths: the grid grew to " +
                                std::to_string(out.grid) + " samples a side");
-    out.seconds.cut = watch.lap();
-
-    stage("parameterize", 0);
-    const Result<Parameterization> map =
-        flattenToSquare(*square, [&](double fraction) { stage("parameterize", fraction); });
-    if (!map) return map.error();
-    out.stretchEfficiency = map->efficiency;
+    out.stretchEfficiency = map.efficiency;
+    out.seconds.cut = cutSeconds;
     out.seconds.parameterize = watch.lap();
 
     stage("sample", 0);
-    const Result<FloatImage> geometry = sampleGeometry(*square, *map, square->grid);
+    const Result<FloatImage> geometry = sampleGeometry(square, map, square.grid);
     if (!geometry) return geometry.error();
     Result<FloatImage> normals = FloatImage{};
-    if (options.normals != 0) normals = sampleNormals(*square, *map, options.normals);
+    if (options.normals != 0) normals = sampleNormals(square, map, options.normals);
     if (!normals) return normals.error();
     out.normals = options.normals;
     out.seconds.sample = watch.lap();
 
     codec::Source source;
-    source.grid = static_cast<uint32_t>(square->grid);
-    source.seam = {static_cast<uint32_t>(square->lowest), static_cast<uint32_t>(square->start),
-                   square->seam()};
+    source.grid = static_cast<uint32_t>(square.grid);
+    source.seam = {static_cast<uint32_t>(square.lowest), static_cast<uint32_t>(square.start), square.seam()};
     source.xyz = geometry->samples;
     source.normalGrid = static_cast<uint32_t>(options.normals);
     source.normals = normals->samples;

@@ -157,14 +157,14 @@ void Hierarchy::collapse(const Candidate& candidate)
     removals_.push_back(std::move(removal));
 }
 
-void Hierarchy::coarsen()
+void Hierarchy::coarsenTo(int interior)
 {
     // Bounded valences give well-shaped levels; the last vertices need more.
-    for (size_t largestValence : {14, 40, 200}) coarsen(largestValence);
-    coarsen(disk_.positions.size());
+    for (size_t largestValence : {14, 40, 200}) coarsen(largestValence, interior);
+    coarsen(disk_.positions.size(), interior);
 }
 
-void Hierarchy::coarsen(size_t largestValence)
+void Hierarchy::coarsen(size_t largestValence, int interior)
 {
     std::vector<int> stamp(disk_.positions.size(), 0);
     std::priority_queue<Candidate> queue;
@@ -177,7 +177,7 @@ void Hierarchy::coarsen(size_t largestValence)
         queue.push(candidate);
     };
     for (int v = 0; v < disk_.vertexCount(); ++v) enqueue(v);
-    while (interior_ > 1 && !queue.empty()) {
+    while (interior_ > interior && !queue.empty()) {
         const Candidate best = queue.top();
         queue.pop();
         if (!vertexAlive_[best.vertex] || best.stamp != stamp[best.vertex]) continue;

@@ -7,8 +7,8 @@
 
 namespace gimg {
 
-/// A disk mesh with an editable coarse version: interior vertices are removed one at a time by half-edge
-/// collapses, each recorded so that it can be undone (a progressive mesh of the disk's interior).
+/// A mesh (most often a disk) with an editable coarse version: interior vertices are removed one at a time by
+/// half-edge collapses, each recorded so that it can be undone (a progressive mesh of the disk's interior).
 /// The border is kept, and no collapse joins two border vertices by a new edge.
 class Hierarchy
 {
@@ -18,7 +18,10 @@ public:
 
     /// Collapses, cheapest first, until one interior vertex is left, the hub of a wheel. (In a disk without
     /// interior edges between border vertices some collapse is always possible.)
-    void coarsen();
+    void coarsen() { coarsenTo(1); }
+
+    /// The same until `interior` of the removable vertices are left, or no collapse is possible.
+    void coarsenTo(int interior);
 
     /// The current mesh, with `vertexOf[i]` the disk's index of its vertex i.
     Mesh current(std::vector<int>& vertexOf) const;
@@ -42,7 +45,7 @@ private:
 
     std::vector<int> ring(int v) const; // ordered neighbours of an interior vertex
     bool findCollapse(int v, size_t largestValence, Candidate& candidate);
-    void coarsen(size_t largestValence);
+    void coarsen(size_t largestValence, int interior);
     int commonNeighbours(int u); // of u and the vertex whose ring is marked
     void collapse(const Candidate& candidate);
     double quadricError(int v, int target) const;

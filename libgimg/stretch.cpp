@@ -226,6 +226,15 @@ double stretchEnergy(const Mesh& mesh, const std::vector<Vec2>& st)
     return energy;
 }
 
+double quarticStretchEnergy(const Mesh& mesh, const std::vector<Vec2>& st)
+{
+    double energy = 0;
+    for (const Triangle& f : mesh.faces)
+        energy += StretchElement(mesh.positions[f[0]], mesh.positions[f[1]], mesh.positions[f[2]])
+                      .energy({st[f[0]], st[f[1]], st[f[2]]});
+    return energy;
+}
+
 double stretchEfficiency(const Mesh& mesh, const std::vector<Vec2>& st)
 {
     const double area = surfaceArea(mesh);

@@ -56,7 +56,10 @@ nlohmann::ordered_json report(const EncodedMesh& encoded, double read, double to
     json["psnr"] = nullptr; // where the surfaces agree there is no finite value
     if (std::isfinite(encoded.psnr)) json["psnr"] = encoded.psnr;
     json["stretch_efficiency"] = encoded.stretchEfficiency;
-    json["cut"] = {{"nodes", encoded.cutNodes}, {"paths", encoded.cutPaths}, {"length", encoded.cutLength}};
+    json["cut"] = {{"nodes", encoded.cutNodes},
+                   {"paths", encoded.cutPaths},
+                   {"extrema", encoded.cutExtrema},
+                   {"length", encoded.cutLength}};
     json["seconds"] = {{"read", read},
                        {"cut", encoded.seconds.cut},
                        {"parameterize", encoded.seconds.parameterize},

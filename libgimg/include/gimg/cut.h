@@ -3,6 +3,7 @@
 #include "gimg/mesh.h"
 #include "gimg/result.h"
 
+#include <span>
 #include <vector>
 
 namespace gimg {
@@ -30,8 +31,11 @@ double cutLength(const Mesh& mesh, const CutGraph& cut);
 /// distance from a seed face, dangling edges are trimmed, and every cut-path is straightened to the shortest
 /// path that keeps the cut's topology. A closed surface of genus 0 is cut along two adjacent edges at the
 /// vertex farthest from the seed. Original boundary edges always belong to the cut.
-/// @param mesh  connected, manifold, oriented
-/// Source: thesis §3.1.2, initial cut.
-CutGraph cutToDisk(const Mesh& mesh);
+/// @param mesh     connected, manifold, oriented
+/// @param extrema  vertices that the cut is then extended to, each in turn by a shortest path; one that it
+/// passes
+///                 already adds nothing
+/// Source: thesis §3.1.2.
+CutGraph cutToDisk(const Mesh& mesh, std::span<const int> extrema = {});
 
 } // namespace gimg

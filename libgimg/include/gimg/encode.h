@@ -57,6 +57,7 @@ struct EncodedMesh
     double stretchEfficiency = 0; ///< see stretchEfficiency()
     int cutNodes = 0;
     int cutPaths = 0;
+    int cutExtrema = 0;   ///< tips that the cut was extended to
     double cutLength = 0; ///< on the surface, in the mesh's unit
     EncodeSeconds seconds;
     std::vector<std::string> warnings;

@@ -13,6 +13,9 @@ namespace gimg {
 /// Source: Sander et al. 2001.
 double stretchEnergy(const Mesh& mesh, const std::vector<Vec2>& st);
 
+/// The sum over faces of A(T) L2(T)^4, which minimizeStretch lowers. Infinite as above.
+double quarticStretchEnergy(const Mesh& mesh, const std::vector<Vec2>& st);
+
 /// A^2 / stretchEnergy with A the surface area: 1 for an isometry, less the more unevenly samples spread.
 double stretchEfficiency(const Mesh& mesh, const std::vector<Vec2>& st);
 
