@@ -93,7 +93,7 @@ protected:
     }
     static bool waitFor(const std::function<bool()>& condition)
     {
-        for (int i = 0; i < 6000 && !condition(); ++i)
+        for (int i = 0; i < 24000 && !condition(); ++i)
             std::this_thread::sleep_for(std::chrono::milliseconds(5));
         return condition();
     }
