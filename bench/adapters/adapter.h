@@ -55,8 +55,7 @@ struct Subject
     int threads = 0;  ///< 0: one a core
 };
 
-/// What came out for one size. Exactly one of `mesh` and `image` is filled, as Description::input says; our
-/// own coders fill `mesh`.
+/// What came out for one size. Exactly one of `mesh` and `image` is filled, as Description::input says.
 struct Coded
 {
     std::vector<std::uint8_t> file; ///< all bytes that a receiver needs
@@ -84,9 +83,9 @@ public:
     virtual Description describe() const = 0;
 
     /// Codes the subject for each size in turn: the best file of at most `sizes[i]` bytes that this coder can
-    /// make. Calls `done` once for each size, in the order given, with an Error of kind TargetUnreachable
-    /// where no file is so small or where the whole subject, coded as finely as makes sense, is smaller than
-    /// an earlier size already held. Any other error ends the run.
+    /// make, which for a small subject may be far smaller. Calls `done` once for each size, in the order
+    /// given, with an Error of kind TargetUnreachable where no file is so small. Any other error ends the
+    /// run.
     virtual Status encode(const Subject& subject, const std::vector<std::size_t>& sizes,
                           const std::function<void(std::size_t size, Result<Coded>)>& done) = 0;
 
