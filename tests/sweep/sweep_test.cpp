@@ -174,7 +174,7 @@ TEST_F(Sweep, NumbersAreThoseOfCompare)
 TEST_F(Sweep, KilledOrInPartsItEndsWithTheSameFiles)
 {
     script("slow", "sleep 0.15; " + deliver());
-    const std::string what = "ring.ply tube.ply" + kSmall + "--peers raw-zlib,slow --out ";
+    const std::string what = "ring.ply tube.ply" + kSmall + "--coders none --peers raw-zlib,slow --out ";
     ASSERT_EQ(run(what + "whole").code, 0);
 
     const pid_t sweep = start(what + "killed");

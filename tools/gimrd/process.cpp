@@ -103,6 +103,7 @@ Result<Ended> runProgram(const std::vector<std::string>& command,
     const pid_t child = start(arguments.data(), out[1], errors[1]);
     ::close(out[1]), ::close(errors[1]);
     if (child < 0) {
+        restIfEnding();
         ::close(out[0]), ::close(errors[0]);
         return Error{ErrorKind::FileNotReadable, command[0] + ": cannot be started"};
     }
@@ -128,15 +129,19 @@ Result<Ended> runProgram(const std::vector<std::string>& command,
 
     rusage usage{};
     const int status = reap(child, usage);
+    restIfEnding();
     ended.code = WIFSIGNALED(status) ? 128 + WTERMSIG(status) : WEXITSTATUS(status);
     ended.peakBytes = std::int64_t{usage.ru_maxrss} * 1024;
     return ended;
 }
 
-bool areProgramsEnding()
+void restIfEnding()
 {
-    const std::lock_guard lock(runningMutex);
-    return ending;
+    {
+        const std::lock_guard lock(runningMutex);
+        if (!ending) return;
+    }
+    for (;;) ::pause();
 }
 
 void endPrograms()

@@ -23,10 +23,11 @@ struct Ended
 Result<Ended> runProgram(const std::vector<std::string>& command,
                          const std::function<void(const std::string&)>& line);
 
-/// Ends all that runProgram() runs, with what they have started, and lets it start no more. For the way out.
+/// Ends all that runProgram() runs, with what they have started, and lets it start no more. For a thread that
+/// is about to end the whole process: runProgram() does not return any more.
 void endPrograms();
 
-/// Whether endPrograms() was called: what fails from then on fails for that reason.
-bool areProgramsEnding();
+/// Does not return after endPrograms(): what fails then fails for that reason, and nobody is to hear of it.
+void restIfEnding();
 
 } // namespace gimg::gimrd

@@ -185,9 +185,9 @@ int sweep(SweepOptions& options)
     const Result<std::vector<CoderProgram>> coders = findCoders(&broken);
     if (!coders) return cli::fail("gimrd", cli::Refused, coders.error().message);
     const Result<SweepPlan> plan = planSweep(options.request, *coders);
-    if (!plan) return refused(plan.error());
-    if (!brokenMatters(options)) broken.clear();
+    if (plan && !brokenMatters(options)) broken.clear();
     for (const Error& error : broken) std::fprintf(stderr, "gimrd: %s\n", error.message.c_str());
+    if (!plan) return refused(plan.error());
 
     const Status opened = folder->open();
     if (!opened) return cli::fail("gimrd", cli::Refused, opened.error().message);
@@ -271,7 +271,11 @@ Command addSweep(CLI::App& app)
     sub->add_flag("--keep", options->run.keep, "Keep the decoded meshes");
     sub->add_option("--out", options->out, "Folder for everything; what is finished there is not made again")
         ->required();
-    return {sub, [options] { return sweep(*options); }};
+    return {sub, [options] {
+                const int code = sweep(*options);
+                restIfEnding();
+                return code;
+            }};
 }
 
 } // namespace gimg::gimrd

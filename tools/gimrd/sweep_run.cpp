@@ -274,7 +274,7 @@ Status Runner::fill(Point& point, const CodedFile& coded, const Job& job, const 
 // Writes a point, whatever became of it.
 void Runner::settle(Work& work, const Point& point)
 {
-    if (areProgramsEnding()) return;
+    restIfEnding();
     const Clock::time_point now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - work.before).count();
     work.before = now;
