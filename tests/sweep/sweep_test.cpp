@@ -131,7 +131,7 @@ protected:
     }
 };
 
-const std::string kSmall = " --bytes 500,900 --grids 33 --samples 2000 ";
+const std::string kSmall = " --bytes 500,900 --grids 17 --samples 2000 ";
 
 } // namespace
 
@@ -142,11 +142,11 @@ TEST_F(Sweep, NumbersAreThoseOfCompare)
     for (const char* file : {"o/results.csv", "o/results.json", "o/report.html", "o/mean.svg", "o/mean.png",
                              "o/curves/ring.svg", "o/curves/tube.png", "o/thumbnails/ring/original.png"})
         EXPECT_GT(fs::file_size(path(file)), 100U) << file;
-    const Result<FloatImage> image = gimrd::readGridImage(path("o/work/ring/raw-zlib-33-900-decoded.f32"));
+    const Result<FloatImage> image = gimrd::readGridImage(path("o/work/ring/raw-zlib-17-900-decoded.f32"));
     ASSERT_TRUE(image.ok());
     mesh("raw.ply", gimrd::openGridMesh(*image));
-    for (const auto& [decoded, series] : {std::pair("o/work/ring/gim-33-900-decoded.ply", "gim,33,900,"),
-                                          std::pair("raw.ply", "raw-zlib,33,900,")}) {
+    for (const auto& [decoded, series] : {std::pair("o/work/ring/gim-17-900-decoded.ply", "gim,17,900,"),
+                                          std::pair("raw.ply", "raw-zlib,17,900,")}) {
         const std::string command = std::string(GIMRD_PATH) + " compare --json --samples 2000 " +
                                     path("ring.ply") + ' ' + path(decoded) + " > " + path("compared");
         ASSERT_EQ(std::system(command.c_str()), 0);
@@ -243,10 +243,10 @@ TEST_F(Sweep, FailingMeshDoesNotStopTheOthers)
     const Ended ended = run("broken.ply none.ply fin.ply ring.ply" + kSmall + "--peers copy --out o");
     EXPECT_EQ(ended.code, 1);
     EXPECT_EQ(point("o/points/broken/copy-500.json").at("state"), "failed");
-    EXPECT_EQ(point("o/points/none/gim-33-900.json").at("message"), "none.ply: no such file");
+    EXPECT_EQ(point("o/points/none/gim-17-900.json").at("message"), "none.ply: no such file");
     EXPECT_EQ(point("o/points/fin/copy-500.json").at("state"), "done");
-    EXPECT_THAT(point("o/points/fin/gim-33-500.json").at("message"), HasSubstr("fin.ply: "));
-    EXPECT_EQ(point("o/points/ring/gim-33-500.json").at("state"), "done");
+    EXPECT_THAT(point("o/points/fin/gim-17-500.json").at("message"), HasSubstr("fin.ply: "));
+    EXPECT_EQ(point("o/points/ring/gim-17-500.json").at("state"), "done");
     const std::string html = read(path("o/report.html"));
     EXPECT_TRUE(contains(html, "<li>broken, The copy, 500, 900 bytes: failed: broken.ply: "));
     for (const char* file : {"o/report.html", "o/results.csv", "o/results.json"})
@@ -256,7 +256,7 @@ TEST_F(Sweep, FailingMeshDoesNotStopTheOthers)
     fs::copy_file(path("tube.ply"), path("none.ply"));
     const Ended again = run("broken.ply none.ply fin.ply ring.ply" + kSmall + "--peers copy --out o");
     EXPECT_EQ(again.code, 1);
-    EXPECT_EQ(point("o/points/none/gim-33-900.json").at("state"), "done");
+    EXPECT_EQ(point("o/points/none/gim-17-900.json").at("state"), "done");
     EXPECT_THAT(again.err, Not(HasSubstr("ring gim")));
 }
 

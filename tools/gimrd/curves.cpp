@@ -58,7 +58,7 @@ std::string frame(const std::string& title, const std::vector<size_t>& sizes)
            << "set title " << quoted(title) << " noenhanced\n"
            << "set logscale x 2\nset xlabel 'bytes'\nset ylabel 'PSNR, dB'\n"
            << "set border 3\nset tics nomirror\nset grid xtics ytics lt 1 lc rgb '#b0b0b0' lw 0.5\n"
-           << "set key right bottom Right noenhanced spacing 1.15\nset xtics (";
+           << "set key below center horizontal noenhanced spacing 1.2\nset xtics (";
     for (size_t s = 0; s < sizes.size(); ++s)
         script << (s > 0 ? ", " : "") << quoted(grouped(sizes[s])) << ' ' << sizes[s];
     script << ")\nset xrange [" << fixedText(static_cast<double>(sizes.front()) * 0.8, 3) << ':'
@@ -92,10 +92,10 @@ Status draw(const std::string& title, const std::vector<size_t>& sizes, const st
     const fs::path drafts[] = {folder.temporary(".svg"), folder.temporary(".png")};
     const std::string body = frame(title, sizes) + psnrRange(curves) + plot(curves);
     const std::string text =
-        "set terminal svg size 760,480 dynamic noenhanced font 'sans-serif,14' background '#ffffff'\n"
+        "set terminal svg size 760,520 dynamic noenhanced font 'sans-serif,14' background '#ffffff'\n"
         "set output " +
         quoted(drafts[0].string()) + '\n' + body +
-        "set terminal pngcairo size 1140,720 noenhanced font 'sans-serif,15' linewidth 1.4 pointscale 1.4\n"
+        "set terminal pngcairo size 1140,780 noenhanced font 'sans-serif,15' linewidth 1.4 pointscale 1.4\n"
         "set output " +
         quoted(drafts[1].string()) + "\nreplot\nset output\n";
     const Status written = folder.publishText(text, script);

@@ -53,6 +53,15 @@ nav a { margin-right: .8rem; }
   h2, h3 { break-after: avoid; } }
 )";
 
+constexpr const char* kDefinitions =
+    R"(<p class="note">Bjontegaard deltas: the mean distance of two curves over the range that both cover, PSNR over
+log<sub>10</sub> bytes (BD-PSNR) or log<sub>10</sub> bytes over PSNR (BD-rate), with piecewise cubic Hermite
+interpolation. n/a: a coder has fewer than four points that each improve on every smaller file, or the ranges do not
+meet. Image coders code the geometry image that gimg makes of the mesh, or that was given; their result is measured as a
+grid with open borders. In the pictures red is the inside of the surface, seen through cracks and folds.</p>
+)";
+static_assert(kBjontegaardPoints == 4, "said above");
+
 std::string escaped(const std::string& text)
 {
     std::string out;
@@ -222,16 +231,23 @@ private:
     {
         std::string html = "<h2>Overview</h2>\n";
         if (results_.meshes.size() > 1) {
-            std::string caption = "Mean PSNR over the meshes for which every coder has a file:";
-            const MeanCurves means = meanCurves(results_);
-            for (size_t s = 0; s < results_.sizes.size(); ++s)
-                caption += (s == 0 ? " " : ", ") + std::to_string(means.meshes[s]) + " of " +
-                           std::to_string(results_.meshes.size()) + " at " + grouped(results_.sizes[s]);
-            html += figure(folder_.path() / "mean.svg", "Mean over the meshes", "mean-", caption + " bytes.");
+            html += figure(folder_.path() / "mean.svg", "Mean over the meshes", "mean-", meansCaption());
         }
         html += psnrTable();
         if (results_.series.size() > 1 && results_.meshes.size() > 1) html += meanDeltas();
         return html;
+    }
+
+    std::string meansCaption() const
+    {
+        const std::vector<int> meshes = meanCurves(results_).meshes;
+        const auto all = static_cast<int>(results_.meshes.size());
+        if (std::ranges::all_of(meshes, [&](int n) { return n == all; })) return "Mean PSNR over the meshes.";
+        std::string caption = "Mean PSNR over the meshes for which every coder has a file:";
+        for (size_t s = 0; s < results_.sizes.size(); ++s)
+            caption += (s == 0 ? " " : ", ") + std::to_string(meshes[s]) + " of " + std::to_string(all) +
+                       " at " + grouped(results_.sizes[s]);
+        return caption + " bytes.";
     }
 
     std::string sizeHeads() const
@@ -440,19 +456,7 @@ private:
             html += "<tr><th scope=\"row\">" + escaped(row.name) + "</th><td>" +
                     grouped(static_cast<size_t>(row.faces)) + "</td><td><code>" + row.sha256 +
                     "</code></td></tr>\n";
-        return html +
-               "</tbody></table></div>\n<p class=\"note\">Bjontegaard deltas: the mean distance of two "
-               "curves "
-               "over the range that both cover, PSNR over log<sub>10</sub> bytes (BD-PSNR) or "
-               "log<sub>10</sub> "
-               "bytes over PSNR (BD-rate), with piecewise cubic Hermite interpolation. n/a: a coder has "
-               "fewer "
-               "than " +
-               std::to_string(kBjontegaardPoints) +
-               " points that each improve on every smaller file, or the ranges do not meet. Image coders "
-               "code "
-               "the geometry image that gimg makes of the mesh; their result is measured as a grid with open "
-               "borders.</p>\n";
+        return html + "</tbody></table></div>\n" + kDefinitions;
     }
 
     const SweepResults& results_;
