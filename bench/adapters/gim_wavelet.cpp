@@ -20,12 +20,13 @@ public:
     Status encode(const Subject& subject, const std::vector<size_t>& sizes,
                   const std::function<void(size_t, Result<Coded>)>& done) override
     {
+        EncodeOptions options;
+        options.grid = subject.grid;
+        options.threads = subject.threads;
+        const Result<MeshEncoder> encoder = MeshEncoder::prepare(subject.mesh, options);
+        if (!encoder) return encoder.error();
         for (const size_t size : sizes) {
-            EncodeOptions options;
-            options.bytes = size;
-            options.grid = subject.grid;
-            options.threads = subject.threads;
-            Result<EncodedMesh> encoded = encodeMesh(subject.mesh, options);
+            Result<EncodedMesh> encoded = encoder->encode({EncodeTarget::Bytes, size});
             if (!encoded && encoded.error().kind != ErrorKind::TargetUnreachable) return encoded.error();
             done(size, encoded ? decoded(std::move(*encoded)) : Result<Coded>(encoded.error()));
         }
