@@ -17,7 +17,7 @@ namespace {
 
 using Bytes = std::vector<uint8_t>;
 
-constexpr int kAttempts = 8;
+constexpr int kAttempts = 6;
 
 /// The corner of least x, y, z and the side of the cube that whole numbers are relative to.
 struct Cube

@@ -7,7 +7,7 @@
 namespace gimg::adapter {
 namespace {
 
-constexpr double kCloseEnough = 0.002; ///< of the room left over
+constexpr double kCloseEnough = 0.005; ///< of the room left over
 constexpr double kLeastStep = 0.01;    ///< between logarithms until one file fits and one does not
 
 } // namespace

@@ -163,28 +163,23 @@ public:
     {
         const SurfaceMeasure measure(gridMesh(subject.image), {kSamples, 1, subject.threads});
         const std::vector<FloatImage> images = resolutions(subject.image);
-        std::map<std::pair<size_t, int>, Bytes> files; // of resolution and bits
+        files_.clear();
         for (const size_t size : sizes) {
             Result<Coded> best = Error{ErrorKind::TargetUnreachable, "no resolution is so small"};
             double bestPsnr = -1;
-            for (size_t i = 0; i < images.size(); ++i)
-                for (int bits = kMostBits; bits >= kFewestBits; --bits) {
-                    Bytes& file = files[{i, bits}];
-                    if (file.empty()) {
-                        Result<Bytes> packed = pack(images[i], bits);
-                        if (!packed) return packed.error();
-                        file = std::move(*packed);
-                    }
-                    if (file.size() > size) continue;
-                    Result<FloatImage> image = unpack(file);
-                    if (!image) return image.error();
-                    const Result<SurfaceDistance> distance = measure.against(gridMesh(*image));
-                    if (!distance || distance->psnr() <= bestPsnr) break;
-                    bestPsnr = distance->psnr();
-                    best = Coded{
-                        file, "zraw", {}, std::move(*image), {{"grid", images[i].width}, {"bits", bits}}};
-                    break;
-                }
+            for (size_t i = 0; i < images.size(); ++i) {
+                const Result<int> bits = mostBitsThatFit(images[i], i, size);
+                if (!bits) return bits.error();
+                if (*bits < kFewestBits) continue;
+                const Bytes& file = files_.at({i, *bits});
+                Result<FloatImage> image = unpack(file);
+                if (!image) return image.error();
+                const Result<SurfaceDistance> distance = measure.against(gridMesh(*image));
+                if (!distance || distance->psnr() <= bestPsnr) continue;
+                bestPsnr = distance->psnr();
+                best =
+                    Coded{file, "zraw", {}, std::move(*image), {{"grid", images[i].width}, {"bits", *bits}}};
+            }
             done(size, std::move(best));
         }
         return Done{};
@@ -200,6 +195,26 @@ public:
                 return Done{};
             });
     }
+
+private:
+    // By bisection, since more bits make a larger file; one less than the fewest where none fits.
+    Result<int> mostBitsThatFit(const FloatImage& image, size_t resolution, size_t size)
+    {
+        int fit = kFewestBits - 1, tooMany = kMostBits + 1;
+        while (tooMany - fit > 1) {
+            const int bits = (fit + tooMany) / 2;
+            Bytes& file = files_[{resolution, bits}];
+            if (file.empty()) {
+                Result<Bytes> packed = pack(image, bits);
+                if (!packed) return packed.error();
+                file = std::move(*packed);
+            }
+            (file.size() <= size ? fit : tooMany) = bits;
+        }
+        return fit;
+    }
+
+    std::map<std::pair<size_t, int>, Bytes> files_; // of resolution and bits
 };
 
 } // namespace
