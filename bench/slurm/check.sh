@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Tries the Slurm recipe of docs/many-meshes.md for real: a dozen shapes as an array job on a Slurm of this machine
 # alone, one task killed in the middle, the array submitted again, the records merged, and every file compared with
-# that of a local run. Needs root, slurm-wlm, munge and build/release. Not part of ./test.
+# that of a local run; then a sweep in parts, its report compared with that of a local sweep. Needs root, slurm-wlm,
+# munge, gnuplot-nox and build/release. Not part of ./test.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")"
 recipes=$PWD
@@ -62,3 +63,16 @@ some=$(sbatch --parsable --array=2-3 "$recipes/gimenc-batch.sbatch" list "${opti
 until_true 60 "the array job" ended "$some"
 grep -q "submit with --array=1-N" gimenc-"$some"_2.log || fail "a part of an array was not refused"
 echo "== all 12 files equal those of the local run; $(wc -l <finished) were finished before the kill and left alone"
+
+echo "== a sweep in two parts, and its report"
+sweep=(meshes/torus-8.ply meshes/genus-8.ply --bytes 500,1000,2000,4000 --coders gim --peers raw-zlib --grids 65)
+gimrd sweep "${sweep[@]}" --out swept-here >/dev/null 2>swept-here.log
+parts=$(sbatch --parsable --array=1-2 --cpus-per-task=1 "$recipes/gimrd-sweep.sbatch" "${sweep[@]}" --out swept)
+until_true 300 "the sweep" ended "$parts"
+[ ! -e swept/report.html ] || fail "a part of a sweep wrote the report"
+find swept/points -name '*.json' -printf '%i %f\n' | sort >points
+[ "$(wc -l <points)" = 16 ] || fail "$(wc -l <points) of 16 points after both parts"
+gimrd sweep "${sweep[@]}" --out swept >/dev/null 2>swept.log
+[ -z "$(find swept/points -name '*.json' -printf '%i %f\n' | sort | comm -13 points -)" ] || fail "points were made again"
+for file in results.csv results.json; do cmp "swept/$file" "swept-here/$file"; done
+echo "== 16 points, none made twice; results.csv and results.json equal those of the local sweep"
