@@ -80,4 +80,19 @@ Result<Mesh> levelMesh(std::span<const uint8_t> file, const DecodedImages& image
     return mesh;
 }
 
+Mesh gridMesh(const FloatImage& image)
+{
+    Mesh mesh;
+    for (int j = 0; j < image.height; ++j)
+        for (int i = 0; i < image.width; ++i)
+            mesh.positions.emplace_back(image.at(i, j, 0), image.at(i, j, 1), image.at(i, j, 2));
+    for (int j = 0; j + 1 < image.height; ++j)
+        for (int i = 0; i + 1 < image.width; ++i) {
+            const int a = j * image.width + i, b = a + 1, c = a + image.width, d = c + 1;
+            mesh.faces.push_back({a, b, d});
+            mesh.faces.push_back({a, d, c});
+        }
+    return mesh;
+}
+
 } // namespace gimg

@@ -8,6 +8,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <csetjmp>
 #include <cstdint>
@@ -126,6 +127,20 @@ Imf::FrameBuffer frameBuffer(float* samples, int width, int left, int top)
     return buffer;
 }
 
+// n for 3 n^2 floats; 0 for any other size.
+int sideOfFloats(std::uintmax_t bytes)
+{
+    const auto n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(bytes / (3 * sizeof(float))))));
+    return n >= 2 && n <= kLargestSide && bytes == std::uintmax_t{3} * n * n * sizeof(float) ? n : 0;
+}
+
+float littleEndianFloat(const uint8_t* bytes)
+{
+    uint32_t bits = 0;
+    for (int k = 0; k < 4; ++k) bits |= uint32_t{bytes[k]} << (8 * k);
+    return std::bit_cast<float>(bits);
+}
+
 } // namespace
 
 BoundingCube boundingCube(const FloatImage& image)
@@ -219,6 +234,54 @@ try {
     return image;
 } catch (const std::exception& e) {
     return failure(ErrorKind::FileCorrupt, path, e.what());
+}
+
+Status writeF32(const FloatImage& image, const std::string& path)
+{
+    if (const Status status = checkedSize(image, path); !status) return status;
+    if (image.width != image.height) return failure(ErrorKind::BadArgument, path, "the image is not square");
+    std::vector<uint8_t> bytes;
+    bytes.reserve(image.samples.size() * sizeof(float));
+    for (size_t c = 0; c < 3; ++c)
+        for (size_t i = c; i < image.samples.size(); i += 3) {
+            const auto bits = std::bit_cast<uint32_t>(image.samples[i]);
+            for (int k = 0; k < 4; ++k) bytes.push_back(static_cast<uint8_t>(bits >> (8 * k)));
+        }
+    File file(std::fopen(path.c_str(), "wb"), std::fclose);
+    if (!file || std::fwrite(bytes.data(), 1, bytes.size(), file.get()) != bytes.size() ||
+        std::fclose(file.release()) != 0)
+        return failure(ErrorKind::FileNotWritable, path, "cannot be written");
+    return Done{};
+}
+
+Result<FloatImage> readF32(const std::string& path)
+{
+    std::error_code failed;
+    const std::uintmax_t size = std::filesystem::file_size(path, failed);
+    File file(std::fopen(path.c_str(), "rb"), std::fclose);
+    if (failed || !file) return failure(ErrorKind::FileNotReadable, path, "cannot be read");
+    const int n = sideOfFloats(size);
+    if (n == 0) return failure(ErrorKind::FileCorrupt, path, "is not 3 n^2 floats");
+    std::vector<uint8_t> bytes(static_cast<size_t>(size));
+    if (std::fread(bytes.data(), 1, bytes.size(), file.get()) != bytes.size())
+        return failure(ErrorKind::FileNotReadable, path, "cannot be read");
+    const size_t pixels = size_t{1} * n * n;
+    FloatImage image{n, n, std::vector<float>(3 * pixels)};
+    for (size_t i = 0; i < pixels; ++i)
+        for (size_t c = 0; c < 3; ++c) {
+            const float value = littleEndianFloat(&bytes[sizeof(float) * (c * pixels + i)]);
+            if (!std::isfinite(value))
+                return failure(ErrorKind::NotFinite, path, "sample " + std::to_string(i) + " is not finite");
+            image.samples[3 * i + c] = value;
+        }
+    return image;
+}
+
+int sideOfF32(const std::string& path)
+{
+    std::error_code failed;
+    const std::uintmax_t size = std::filesystem::file_size(path, failed);
+    return failed ? 0 : sideOfFloats(size);
 }
 
 } // namespace gimg

@@ -1,5 +1,6 @@
 #include "gimg/unfold.h"
 
+#include "gimg/decode.h"
 #include "gimg/distance.h"
 #include "gimg/extrema.h"
 #include "gimg/sample.h"
@@ -31,17 +32,7 @@ double gridPsnr(const SurfaceMeasure& surface, const Unfolded& unfolded)
     const int n = unfolded.square.grid;
     const Result<FloatImage> image = sampleGeometry(unfolded.square, unfolded.map, n);
     if (!image) return -1;
-    Mesh grid;
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i)
-            grid.positions.emplace_back(image->at(i, j, 0), image->at(i, j, 1), image->at(i, j, 2));
-    for (int j = 0; j + 1 < n; ++j)
-        for (int i = 0; i + 1 < n; ++i) {
-            const int a = j * n + i;
-            grid.faces.push_back({a, a + 1, a + n + 1});
-            grid.faces.push_back({a, a + n + 1, a + n});
-        }
-    const Result<SurfaceDistance> distance = surface.against(grid);
+    const Result<SurfaceDistance> distance = surface.against(gridMesh(*image));
     return distance ? distance->psnr() : -1;
 }
 

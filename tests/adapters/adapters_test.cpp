@@ -51,23 +51,6 @@ Mesh torus(int around, int across)
     return mesh;
 }
 
-// As gimrd triangulates images.
-Mesh gridMesh(const FloatImage& image)
-{
-    Mesh mesh;
-    const int n = image.width;
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i)
-            mesh.positions.emplace_back(image.at(i, j, 0), image.at(i, j, 1), image.at(i, j, 2));
-    for (int j = 0; j + 1 < n; ++j)
-        for (int i = 0; i + 1 < n; ++i) {
-            const int a = j * n + i;
-            mesh.faces.push_back({a, a + 1, a + n + 1});
-            mesh.faces.push_back({a, a + n + 1, a + n});
-        }
-    return mesh;
-}
-
 std::string planar(const FloatImage& image)
 {
     std::string bytes;

@@ -30,4 +30,8 @@ Result<DecodedImages> decodeImages(std::span<const uint8_t> file, unsigned flags
 Result<Mesh> levelMesh(std::span<const uint8_t> file, const DecodedImages& images, unsigned level,
                        unsigned flags = 0);
 
+/// The triangles of a geometry image with open borders, no samples glued; vertex j * width + i is sample
+/// (i, j).
+Mesh gridMesh(const FloatImage& image);
+
 } // namespace gimg

@@ -68,4 +68,14 @@ Status writeExr(const FloatImage& image, const std::string& path);
 /// pixels).
 Result<FloatImage> readExr(const std::string& path);
 
+/// Writes and reads .f32, a square image as the other geometry image coders take it: 3 n^2 little-endian
+/// floats, planar x, y, z, row after row; n follows from the size of the file.
+/// Errors: BadArgument (not square, or as writeExr), FileNotWritable; FileNotReadable, FileCorrupt (no such
+/// size), NotFinite.
+Status writeF32(const FloatImage& image, const std::string& path);
+Result<FloatImage> readF32(const std::string& path);
+
+/// Samples a side of a .f32 file, as its size says; 0 if it is not there or has no such size.
+int sideOfF32(const std::string& path);
+
 } // namespace gimg

@@ -1,0 +1,1 @@
+// Nothing: a precompiled header must belong to a target that compiles something.
