@@ -1,6 +1,9 @@
 #include "gimg/decode.h"
 
+#include "codec/triangulate.h"
+
 #include <cstddef>
+#include <numeric>
 #include <string>
 
 namespace gimg {
@@ -80,18 +83,29 @@ Result<Mesh> levelMesh(std::span<const uint8_t> file, const DecodedImages& image
     return mesh;
 }
 
-Mesh gridMesh(const FloatImage& image)
+Mesh gridMesh(const FloatImage& image, GridDiagonals diagonals)
 {
     Mesh mesh;
-    for (int j = 0; j < image.height; ++j)
-        for (int i = 0; i < image.width; ++i)
+    const int n = image.width;
+    for (int j = 0; j < n; ++j)
+        for (int i = 0; i < n; ++i)
             mesh.positions.emplace_back(image.at(i, j, 0), image.at(i, j, 1), image.at(i, j, 2));
-    for (int j = 0; j + 1 < image.height; ++j)
-        for (int i = 0; i + 1 < image.width; ++i) {
-            const int a = j * image.width + i, b = a + 1, c = a + image.width, d = c + 1;
-            mesh.faces.push_back({a, b, d});
-            mesh.faces.push_back({a, d, c});
-        }
+    if (diagonals == GridDiagonals::Rising) {
+        for (int j = 0; j + 1 < n; ++j)
+            for (int i = 0; i + 1 < n; ++i) {
+                const int a = j * n + i, b = a + 1, c = a + n, d = c + 1;
+                mesh.faces.push_back({a, b, d});
+                mesh.faces.push_back({a, d, c});
+            }
+        return mesh;
+    }
+    const auto size = static_cast<uint32_t>(n);
+    std::vector<uint32_t> vertices(mesh.positions.size()), corners(size_t{6} * (size - 1) * (size - 1));
+    std::iota(vertices.begin(), vertices.end(), 0U);
+    codec::triangulate(size, 1, size, image.samples.data(), vertices.data(), corners.data());
+    for (size_t k = 0; k < corners.size(); k += 3)
+        mesh.faces.push_back({static_cast<int>(corners[k]), static_cast<int>(corners[k + 1]),
+                              static_cast<int>(corners[k + 2])});
     return mesh;
 }
 
