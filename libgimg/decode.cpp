@@ -83,22 +83,13 @@ Result<Mesh> levelMesh(std::span<const uint8_t> file, const DecodedImages& image
     return mesh;
 }
 
-Mesh gridMesh(const FloatImage& image, GridDiagonals diagonals)
+Mesh gridMesh(const FloatImage& image)
 {
     Mesh mesh;
     const int n = image.width;
     for (int j = 0; j < n; ++j)
         for (int i = 0; i < n; ++i)
             mesh.positions.emplace_back(image.at(i, j, 0), image.at(i, j, 1), image.at(i, j, 2));
-    if (diagonals == GridDiagonals::Rising) {
-        for (int j = 0; j + 1 < n; ++j)
-            for (int i = 0; i + 1 < n; ++i) {
-                const int a = j * n + i, b = a + 1, c = a + n, d = c + 1;
-                mesh.faces.push_back({a, b, d});
-                mesh.faces.push_back({a, d, c});
-            }
-        return mesh;
-    }
     const auto size = static_cast<uint32_t>(n);
     std::vector<uint32_t> vertices(mesh.positions.size()), corners(size_t{6} * (size - 1) * (size - 1));
     std::iota(vertices.begin(), vertices.end(), 0U);

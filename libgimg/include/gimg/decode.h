@@ -30,15 +30,8 @@ Result<DecodedImages> decodeImages(std::span<const uint8_t> file, unsigned flags
 Result<Mesh> levelMesh(std::span<const uint8_t> file, const DecodedImages& images, unsigned level,
                        unsigned flags = 0);
 
-/// How the cells of a grid are split into triangles.
-enum class GridDiagonals
-{
-    Decoder, ///< as levelMesh does: inside the image the shorter one
-    Rising,  ///< from (i, j) to (i + 1, j + 1), everywhere
-};
-
-/// The triangles of a square geometry image with open borders, no samples glued; vertex j * width + i is
-/// sample (i, j).
-Mesh gridMesh(const FloatImage& image, GridDiagonals diagonals = GridDiagonals::Decoder);
+/// The triangles of a square geometry image as levelMesh has them, but with open borders, no samples glued;
+/// vertex j * width + i is sample (i, j).
+Mesh gridMesh(const FloatImage& image);
 
 } // namespace gimg
