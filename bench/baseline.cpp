@@ -5,11 +5,14 @@
 #include "gimg/encode.h"
 #include "gimg/mesh_io.h"
 
+#include <CLI/CLI.hpp>
 #include <unistd.h>
 
 #include <cmath>
 #include <cstdlib>
 #include <filesystem>
+#include <fstream>
+#include <iostream>
 #include <sstream>
 
 namespace {

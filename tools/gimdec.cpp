@@ -5,7 +5,11 @@
 #include "gimg/image_io.h"
 #include "gimg/mesh_io.h"
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include <chrono>
+#include <iostream>
 
 namespace {
 

@@ -1,10 +1,13 @@
 // giminfo: what a .gim file holds.
 #include "cli.h"
 
+#include <CLI/CLI.hpp>
 #include <gim.h>
+#include <nlohmann/json.hpp>
 
 #include <charconv>
 #include <iomanip>
+#include <iostream>
 #include <sstream>
 
 namespace {

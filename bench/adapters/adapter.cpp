@@ -4,19 +4,16 @@
 #include "gimg/mesh_io.h"
 #include "tools/cli.h"
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
 #include <unistd.h>
 
-#include <bit>
-#include <cmath>
 #include <cstdlib>
-#include <cstring>
 #include <filesystem>
+#include <iostream>
 #include <sstream>
 
 namespace gimg::adapter {
-
-static_assert(std::endian::native == std::endian::little,
-              "the .f32 reader and writer copy floats as they are");
 
 bool onPath(const std::string& program)
 {
@@ -25,53 +22,6 @@ bool onPath(const std::string& program)
     for (std::string folder; std::getline(folders, folder, ':');)
         if (::access((folder + '/' + program).c_str(), X_OK) == 0) return true;
     return false;
-}
-
-Mesh gridMesh(const FloatImage& image)
-{
-    Mesh mesh;
-    const int n = image.width;
-    for (int j = 0; j < image.height; ++j)
-        for (int i = 0; i < n; ++i)
-            mesh.positions.emplace_back(image.at(i, j, 0), image.at(i, j, 1), image.at(i, j, 2));
-    for (int j = 0; j + 1 < image.height; ++j)
-        for (int i = 0; i + 1 < n; ++i) {
-            const int a = j * n + i, b = a + 1, c = a + n, d = c + 1;
-            mesh.faces.push_back({a, b, d});
-            mesh.faces.push_back({a, d, c});
-        }
-    return mesh;
-}
-
-Status writeF32(const FloatImage& image, const std::string& path)
-{
-    const size_t pixels = image.samples.size() / 3;
-    std::vector<float> planar(image.samples.size());
-    for (size_t i = 0; i < pixels; ++i)
-        for (size_t c = 0; c < 3; ++c) planar[c * pixels + i] = image.samples[3 * i + c];
-    if (!cli::writeFile(path, planar.data(), planar.size() * sizeof(float)))
-        return Error{ErrorKind::FileNotWritable, path + ": cannot be written"};
-    return Done{};
-}
-
-Result<FloatImage> readF32(const std::string& path)
-{
-    const std::optional<std::vector<uint8_t>> bytes = cli::readFile(path);
-    if (!bytes) return Error{ErrorKind::FileNotReadable, path + ": cannot be read"};
-    const auto pixels = bytes->size() / (3 * sizeof(float));
-    const auto n = static_cast<int>(std::lround(std::sqrt(static_cast<double>(pixels))));
-    if (n < 2 || bytes->size() != size_t{3} * n * n * sizeof(float))
-        return Error{ErrorKind::FileCorrupt, path + ": is not 3 n^2 floats"};
-    std::vector<float> planar(3 * pixels);
-    std::memcpy(planar.data(), bytes->data(), bytes->size());
-    FloatImage image{n, n, std::vector<float>(3 * pixels)};
-    for (size_t i = 0; i < pixels; ++i)
-        for (size_t c = 0; c < 3; ++c) {
-            if (!std::isfinite(planar[c * pixels + i]))
-                return Error{ErrorKind::NotFinite, path + ": sample " + std::to_string(i) + " is not finite"};
-            image.samples[3 * i + c] = planar[c * pixels + i];
-        }
-    return image;
 }
 
 namespace {

@@ -100,11 +100,4 @@ std::unique_ptr<Adapter> makeAdapter();
 /// Whether a program of this name is on PATH.
 bool onPath(const std::string& program);
 
-/// The triangles of a grid with open borders; vertex j * width + i is sample (i, j).
-Mesh gridMesh(const FloatImage& image);
-
-/// Writes and reads .f32: 3 n^2 little-endian floats, planar x, y, z, row after row; n follows from the size.
-Status writeF32(const FloatImage& image, const std::string& path);
-Result<FloatImage> readF32(const std::string& path);
-
 } // namespace gimg::adapter

@@ -1,8 +1,9 @@
 #include "image_peer.h"
 
+#include "gimg/decode.h"
 #include "largest_that_fits.h"
 #include "tools/cli.h"
-#include "tools/gimrd/process.h"
+#include "tools/process.h"
 
 #include <unistd.h>
 
@@ -177,8 +178,8 @@ Scratch::~Scratch()
 Result<std::string> runTool(const std::vector<std::string>& command)
 {
     std::string printed;
-    const Result<gimrd::Ended> ended =
-        gimrd::runProgram(command, [&](const std::string& line) { printed += line + '\n'; });
+    const Result<cli::Ended> ended =
+        cli::runProgram(command, [&](const std::string& line) { printed += line + '\n'; });
     if (!ended) return ended.error();
     printed += ended->errors;
     if (ended->code == 0) return printed;

@@ -2,6 +2,8 @@
 #include "adapter.h"
 #include "best_for_size.h"
 
+#include "gimg/decode.h"
+
 #include <zlib.h>
 
 #include <algorithm>

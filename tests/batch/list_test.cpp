@@ -1,7 +1,7 @@
 // What a list of jobs says, and how it is shared out.
-#include "list.h"
+#include "gimenc/list.h"
 #include "tools/cli.h"
-#include "whole_file.h"
+#include "tools/whole_file.h"
 
 #include "temporary_files.h"
 
@@ -137,14 +137,14 @@ TEST_F(WholeFile, ReplacesAndLeavesNothingElse)
 {
     const std::string file = write("file", "earlier");
     ASSERT_EQ(::symlink(file.c_str(), path("link").c_str()), 0);
-    EXPECT_TRUE(writeWhole(path("link"), "later", 5));
+    EXPECT_TRUE(cli::writeWhole(path("link"), "later", 5));
     EXPECT_EQ(read(file), "later");
     EXPECT_TRUE(std::filesystem::is_symlink(path("link")));
-    EXPECT_FALSE(writeWhole(path("none/file"), "x", 1));
-    EXPECT_FALSE(writeWhole(path(""), "x", 1)); // a folder
+    EXPECT_FALSE(cli::writeWhole(path("none/file"), "x", 1));
+    EXPECT_FALSE(cli::writeWhole(path(""), "x", 1)); // a folder
     ASSERT_EQ(::mkfifo(path("pipe").c_str(), 0600), 0);
     const int reader = ::open(path("pipe").c_str(), O_RDONLY | O_NONBLOCK);
-    EXPECT_TRUE(writeWhole(path("pipe"), "through", 7));
+    EXPECT_TRUE(cli::writeWhole(path("pipe"), "through", 7));
     char through[8] = {};
     EXPECT_EQ(::read(reader, through, sizeof through), 7);
     EXPECT_STREQ(through, "through");
@@ -157,13 +157,13 @@ TEST_F(WholeFile, Sha256IsThatOfTheStandard)
 {
     const char* const ofAbc =
         "ba7816bf8f01cfea414140de5dae2223b00361a396177a9cb410ff61f20015ad"; // FIPS 180-2
-    EXPECT_EQ(contentsOf("abc", 3).sha256, ofAbc);
-    const auto contents = contentsOf(write("abc", "abc"));
+    EXPECT_EQ(cli::contentsOf("abc", 3).sha256, ofAbc);
+    const auto contents = cli::contentsOf(write("abc", "abc"));
     ASSERT_TRUE(contents);
     EXPECT_EQ(contents->sha256, ofAbc);
     EXPECT_EQ(contents->bytes, 3u);
-    EXPECT_FALSE(contentsOf(path("none")));
-    EXPECT_FALSE(contentsOf(path("")));
+    EXPECT_FALSE(cli::contentsOf(path("none")));
+    EXPECT_FALSE(cli::contentsOf(path("")));
 }
 
 } // namespace

@@ -1,4 +1,5 @@
 // What a sweep consists of, and how it falls into parts.
+#include "cli.h"
 #include "gimrd/sweep_plan.h"
 #include "temporary_files.h"
 
@@ -97,17 +98,17 @@ TEST(Parts, CoverEveryJobExactlyOnce)
             std::multiset<size_t> covered;
             for (size_t index = 1; index <= count; ++index)
                 for (size_t job = 0; job < jobs; ++job)
-                    if (isInPart(job, {index, count})) covered.insert(job);
+                    if (cli::Part{index, count}.has(job)) covered.insert(job);
             EXPECT_EQ(covered.size(), jobs);
             EXPECT_EQ(std::set<size_t>(covered.begin(), covered.end()).size(), jobs);
         }
-    EXPECT_TRUE(isInPart(1, {2, 8})); // the second job
+    EXPECT_TRUE((cli::Part{2, 8}.has(1))); // the second job
 }
 
 TEST(Parts, AreWrittenAsIOfN)
 {
-    EXPECT_EQ(parsePart("3/8")->index, 3U);
-    EXPECT_EQ(parsePart("3/8")->count, 8U);
+    EXPECT_EQ(cli::parsePart("3/8")->index, 3U);
+    EXPECT_EQ(cli::parsePart("3/8")->count, 8U);
     for (const char* wrong : {"", "3", "0/8", "9/8", "3/", "/8", "3/8x", "-1/8", "3 /8"})
-        EXPECT_FALSE(parsePart(wrong)) << wrong;
+        EXPECT_FALSE(cli::parsePart(wrong)) << wrong;
 }

@@ -1,5 +1,5 @@
 // gimrd sweep, run as a user does: whole, killed, in parts, with coders that misbehave.
-#include "gimrd/grid_image.h"
+#include "gimg/decode.h"
 
 #include "gimg/mesh_io.h"
 #include "shapes.h"
@@ -142,9 +142,9 @@ TEST_F(Sweep, NumbersAreThoseOfCompare)
     for (const char* file : {"o/results.csv", "o/results.json", "o/report.html", "o/mean.svg", "o/mean.png",
                              "o/curves/ring.svg", "o/curves/tube.png", "o/thumbnails/ring/original.png"})
         EXPECT_GT(fs::file_size(path(file)), 100U) << file;
-    const Result<FloatImage> image = gimrd::readGridImage(path("o/work/ring/raw-zlib-17-900-decoded.f32"));
+    const Result<FloatImage> image = readF32(path("o/work/ring/raw-zlib-17-900-decoded.f32"));
     ASSERT_TRUE(image.ok());
-    mesh("raw.ply", gimrd::openGridMesh(*image));
+    mesh("raw.ply", gridMesh(*image));
     for (const auto& [decoded, series] : {std::pair("o/work/ring/gim-17-900-decoded.ply", "gim,17,900,"),
                                           std::pair("raw.ply", "raw-zlib,17,900,")}) {
         const std::string command = std::string(GIMRD_PATH) + " compare --json --samples 2000 " +
@@ -326,7 +326,7 @@ TEST_F(Sweep, GeometryImageIsItsOwnReference)
     for (int j = 0; j < 17; ++j)
         for (int i = 0; i < 17; ++i)
             for (const int x : {i, j, i * j % 5}) image.samples.push_back(static_cast<float>(x));
-    ASSERT_TRUE(gimrd::writeGridImage(image, path("wavy.f32")).ok());
+    ASSERT_TRUE(writeF32(image, path("wavy.f32")).ok());
     script("copy", deliver());
     const Ended ended =
         run("wavy.f32 --bytes 900 --samples 2000 --coders none --peers copy,raw-zlib --out o");

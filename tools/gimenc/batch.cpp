@@ -1,16 +1,18 @@
 #include "batch.h"
 
-#include "../gimrd/process.h"
+#include "../process.h"
 #include "list.h"
 #include "pace.h"
 #include "record.h"
 #include "status_line.h"
 #include "summary.h"
 
+#include <CLI/CLI.hpp>
 #include <sched.h>
 
 #include <algorithm>
 #include <condition_variable>
+#include <cstdio>
 #include <cstring>
 #include <filesystem>
 #include <mutex>
@@ -74,11 +76,11 @@ struct Outcome
 
 Outcome runJob(const std::string& program, const Arguments& a, int threads)
 {
-    const std::optional<Contents> input = contentsOf(a.input);
+    const std::optional<cli::Contents> input = cli::contentsOf(a.input);
     if (input && isFinished(a, *input)) return {Outcome::AlreadyThere, ""};
     std::string printed;
     const auto ended =
-        gimrd::runProgram(command(program, a, threads), [&](const std::string& line) { printed = line; });
+        cli::runProgram(command(program, a, threads), [&](const std::string& line) { printed = line; });
     if (ended && ended->code == cli::Done) return {Outcome::Done, printed};
     std::string error = ended ? lastLine(ended->errors) : ended.error().message;
     if (ended && ended->code > kKilled)

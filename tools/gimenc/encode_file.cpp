@@ -1,14 +1,16 @@
 #include "encode_file.h"
 
+#include "../whole_file.h"
 #include "record.h"
 #include "status_line.h"
-#include "whole_file.h"
 
 #include <gim.h>
 
 #include <chrono>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <iostream>
 
 namespace gimg::gimenc {
 namespace {
@@ -109,12 +111,12 @@ void tell(const Arguments& a, const EncodedMesh& encoded)
                 a.output.c_str(), encoded.file.size(), encoded.grid, encoded.grid, encoded.psnr);
 }
 
-Failure writeMade(const Arguments& a, const Made& made, const std::optional<Contents>& input)
+Failure writeMade(const Arguments& a, const Made& made, const std::optional<cli::Contents>& input)
 {
     const std::vector<std::uint8_t>& file = made.encoded.file;
     if (a.resume) {
         if (const auto what = recordDone(a, *input, file, made.report)) return {cli::Refused, *what};
-    } else if (!writeWhole(a.output, file.data(), file.size())) {
+    } else if (!cli::writeWhole(a.output, file.data(), file.size())) {
         return {cli::Refused, a.output + ": cannot be written"};
     }
     if (!a.json.empty() && !cli::writeJson(a.json, made.report))
@@ -123,7 +125,7 @@ Failure writeMade(const Arguments& a, const Made& made, const std::optional<Cont
 }
 
 // `input` tells an input that changes while it is read from what is encoded: it was identified before.
-Failure makeAndWrite(const Arguments& a, const std::optional<Contents>& input)
+Failure makeAndWrite(const Arguments& a, const std::optional<cli::Contents>& input)
 {
     std::error_code error;
     if (a.resume && !input) return {cli::Refused, a.input + ": cannot be read"};
@@ -146,8 +148,8 @@ int encodeFile(const Arguments& a)
     std::error_code ignored;
     if (std::filesystem::equivalent(a.input, a.output, ignored))
         return cli::fail("gimenc", cli::Usage, a.output + ": is the input itself");
-    std::optional<Contents> input;
-    if (a.resume) input = contentsOf(a.input);
+    std::optional<cli::Contents> input;
+    if (a.resume) input = cli::contentsOf(a.input);
     if (input && isFinished(a, *input)) {
         if (!a.quiet) std::printf("%s: already there\n", a.output.c_str());
         return cli::Done;

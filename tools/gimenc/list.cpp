@@ -3,6 +3,7 @@
 #include "record.h"
 
 #include <filesystem>
+#include <iostream>
 #include <iterator>
 #include <unordered_map>
 

@@ -3,6 +3,8 @@
 #include "batch.h"
 #include "encode_file.h"
 
+#include <CLI/CLI.hpp>
+
 namespace {
 
 using namespace gimg;

@@ -27,11 +27,11 @@ Json readRecord(const Arguments& a)
 
 bool fitsOutput(const Json& record, const Arguments& a)
 {
-    const auto output = contentsOf(a.output);
+    const auto output = cli::contentsOf(a.output);
     return output && holds(record, "output_sha256", output->sha256);
 }
 
-Json identity(const Arguments& a, const char* status, const std::optional<Contents>& input)
+Json identity(const Arguments& a, const char* status, const std::optional<cli::Contents>& input)
 {
     Json record;
     record["status"] = status;
@@ -47,7 +47,7 @@ Json identity(const Arguments& a, const char* status, const std::optional<Conten
 bool writeRecord(const Arguments& a, const Json& record)
 {
     const std::string text = record.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
-    return writeWhole(recordPath(a.output), text.data(), text.size());
+    return cli::writeWhole(recordPath(a.output), text.data(), text.size());
 }
 
 void setAside(const std::string& output)
@@ -74,19 +74,19 @@ Recorded recorded(const Arguments& a)
     return {Standing::Done, std::move(record)};
 }
 
-bool isFinished(const Arguments& a, const Contents& input)
+bool isFinished(const Arguments& a, const cli::Contents& input)
 {
     const Recorded found = recorded(a);
     return found.standing == Standing::Done && holds(found.record, "input_bytes", input.bytes) &&
            holds(found.record, "input_sha256", input.sha256) && fitsOutput(found.record, a);
 }
 
-std::optional<std::string> recordDone(const Arguments& a, const Contents& input,
+std::optional<std::string> recordDone(const Arguments& a, const cli::Contents& input,
                                       const std::vector<std::uint8_t>& file, const Json& report)
 {
     // The record comes last: if this process ends between the two, the job counts as not done.
-    if (!writeWhole(a.output, file.data(), file.size())) return a.output + ": cannot be written";
-    const Contents output = contentsOf(file.data(), file.size());
+    if (!cli::writeWhole(a.output, file.data(), file.size())) return a.output + ": cannot be written";
+    const cli::Contents output = cli::contentsOf(file.data(), file.size());
     Json record = identity(a, "done", input);
     record["output_bytes"] = output.bytes;
     record["output_sha256"] = output.sha256;
@@ -95,7 +95,7 @@ std::optional<std::string> recordDone(const Arguments& a, const Contents& input,
     return std::nullopt;
 }
 
-void recordFailure(const Arguments& a, const std::optional<Contents>& input, const std::string& error)
+void recordFailure(const Arguments& a, const std::optional<cli::Contents>& input, const std::string& error)
 {
     const Recorded found = recorded(a);
     if (input ? isFinished(a, *input) : found.standing == Standing::Done && fitsOutput(found.record, a))

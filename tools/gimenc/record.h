@@ -1,7 +1,7 @@
 #pragma once
 
+#include "../whole_file.h"
 #include "arguments.h"
-#include "whole_file.h"
 
 #include <nlohmann/json.hpp>
 
@@ -31,16 +31,16 @@ std::string recordPath(const std::string& output);
 Recorded recorded(const Arguments& a);
 
 /// Whether OUTPUT is, to the byte, what a record of these options and this version and this input tells.
-bool isFinished(const Arguments& a, const Contents& input);
+bool isFinished(const Arguments& a, const cli::Contents& input);
 
 /// Writes OUTPUT and then its record. Nothing if both are written, otherwise what could not be.
-std::optional<std::string> recordDone(const Arguments& a, const Contents& input,
+std::optional<std::string> recordDone(const Arguments& a, const cli::Contents& input,
                                       const std::vector<std::uint8_t>& file,
                                       const nlohmann::ordered_json& report);
 
 /// Records that a job failed. An OUTPUT made of something else, which could be taken for the result, is
 /// renamed to OUTPUT.old, its record to OUTPUT.old.json. One that another process finished meanwhile, or that
 /// is what the options ask for as far as can be told when the input cannot be read, stays with its record.
-void recordFailure(const Arguments& a, const std::optional<Contents>& input, const std::string& error);
+void recordFailure(const Arguments& a, const std::optional<cli::Contents>& input, const std::string& error);
 
 } // namespace gimg::gimenc

@@ -55,7 +55,10 @@ std::string cell(const Json& value)
 std::string csv(const Json& rows)
 {
     std::string text;
-    for (const char* column : kColumns) text += (text.empty() ? "" : ",") + std::string(column);
+    for (const char* column : kColumns) {
+        if (!text.empty()) text += ',';
+        text += column;
+    }
     text += '\n';
     for (const Json& row : rows) {
         std::string line;
@@ -87,7 +90,7 @@ Result<Counts> writeSummary(const std::string& path, const std::vector<Job>& job
     }
     const std::string text =
         endsWith(path, ".csv") ? csv(rows) : rows.dump(2, ' ', false, Json::error_handler_t::replace) + '\n';
-    if (!writeWhole(path, text.data(), text.size()))
+    if (!cli::writeWhole(path, text.data(), text.size()))
         return Error{ErrorKind::FileNotWritable, path + ": cannot be written"};
     return counts;
 }

@@ -1,6 +1,7 @@
 #include "adapters.h"
 
-#include "process.h"
+#include "../cli.h"
+#include "../process.h"
 
 #include <unistd.h>
 
@@ -25,13 +26,6 @@ std::string howItEnded(int code)
                       : "ended with status " + std::to_string(code);
 }
 
-std::string lastLine(std::string text)
-{
-    while (!text.empty() && text.back() == '\n') text.pop_back();
-    const size_t start = text.find_last_of('\n');
-    return start == std::string::npos ? text : text.substr(start + 1);
-}
-
 // Runs the adapter; each line it prints must be a JSON object, which `take` reads. Anything that `take`
 // misses in it, or names in its result, is a breach of the protocol; the first one is reported.
 Status talk(const CoderProgram& coder, std::vector<std::string> arguments,
@@ -39,7 +33,7 @@ Status talk(const CoderProgram& coder, std::vector<std::string> arguments,
 {
     arguments.insert(arguments.begin(), coder.program.string());
     std::string breach;
-    const Result<Ended> ended = runProgram(arguments, [&](const std::string& line) {
+    const Result<cli::Ended> ended = cli::runProgram(arguments, [&](const std::string& line) {
         std::string wrong;
         try {
             wrong = take(Json::parse(line));
@@ -50,7 +44,7 @@ Status talk(const CoderProgram& coder, std::vector<std::string> arguments,
     });
     if (!ended) return ended.error();
     if (ended->code != 0) {
-        const std::string said = lastLine(ended->errors);
+        const std::string said = cli::lastLine(ended->errors);
         return failure(coder, howItEnded(ended->code) + (said.empty() ? "" : ": " + said));
     }
     if (!breach.empty()) return failure(coder, breach);

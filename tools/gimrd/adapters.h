@@ -57,7 +57,7 @@ struct CoderTimes
     std::size_t bytes = 0; ///< of the file
     std::vector<double> encode, decode;
     std::string note;           ///< what the times include that others do not
-    std::int64_t peakBytes = 0; ///< see Ended
+    std::int64_t peakBytes = 0; ///< see cli::Ended
 };
 
 /// Runs `time` of the protocol. Errors: as encodeWith.

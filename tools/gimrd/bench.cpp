@@ -1,10 +1,10 @@
 // gimrd bench: speed, memory and scaling of gimg and its peers, in one run.
+#include "../process.h"
 #include "adapters.h"
 #include "bench_decode.h"
 #include "bench_machine.h"
 #include "bench_text.h"
 #include "command.h"
-#include "process.h"
 #include "subdivide.h"
 
 #include "../cli.h"
@@ -12,11 +12,16 @@
 #include "gimg/decode.h"
 #include "gimg/mesh_io.h"
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
+#include <cstdio>
 #include <filesystem>
+#include <iostream>
 #include <memory>
 #include <set>
 #include <sstream>
@@ -136,7 +141,7 @@ struct ToolRun
     Json peak;
 };
 
-std::string messageOf(const Ended& ended)
+std::string messageOf(const cli::Ended& ended)
 {
     std::istringstream lines(ended.errors);
     std::string last;
@@ -153,7 +158,8 @@ Result<ToolRun> runTool(const std::string& name, std::vector<std::string> argume
     arguments.insert(arguments.begin(), (self.parent_path() / name).string());
     std::string out;
     const std::int64_t own = ownBytes();
-    const Result<Ended> ended = runProgram(arguments, [&](const std::string& line) { out += line; });
+    const Result<cli::Ended> ended =
+        cli::runProgram(arguments, [&](const std::string& line) { out += line; });
     if (!ended) return ended.error();
     if (ended->code != 0) {
         const bool unreachable = ended->code == cli::Unreachable;
@@ -329,13 +335,7 @@ Status writeImage(const Bench& bench, const Path& out)
     if (!bytes) return Error{ErrorKind::FileNotReadable, request.out.string() + ": cannot be read"};
     const Result<DecodedImages> images = decodeImages(*bytes);
     if (!images) return images.error();
-    std::vector<float> planar;
-    for (size_t c = 0; c < 3; ++c)
-        for (size_t k = c; k < images->geometry.samples.size(); k += 3)
-            planar.push_back(images->geometry.samples[k]);
-    if (!cli::writeFile(out.string(), planar.data(), planar.size() * sizeof(float)))
-        return Error{ErrorKind::FileNotWritable, out.string() + ": cannot be written"};
-    return Done{};
+    return writeF32(images->geometry, out.string());
 }
 
 bool anyPeer(const Bench& bench, bool takesImage)

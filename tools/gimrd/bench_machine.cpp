@@ -1,5 +1,7 @@
 #include "bench_machine.h"
 
+#include <nlohmann/json.hpp>
+
 #include <unistd.h>
 
 #include <cstdlib>

@@ -1,5 +1,7 @@
 #include "bench_text.h"
 
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cstdio>
 #include <string>

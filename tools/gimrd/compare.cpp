@@ -6,6 +6,9 @@
 #include "gimg/distance.h"
 #include "gimg/mesh_io.h"
 
+#include <CLI/CLI.hpp>
+#include <nlohmann/json.hpp>
+
 #include <algorithm>
 #include <cmath>
 #include <filesystem>

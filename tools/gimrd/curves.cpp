@@ -1,7 +1,8 @@
 #include "curves.h"
 #include "number_text.h"
 
-#include "process.h"
+#include "../cli.h"
+#include "../process.h"
 
 #include <unistd.h>
 
@@ -32,12 +33,6 @@ std::string quoted(const std::string& text)
     std::string out = "'";
     for (const char c : text) out += c == '\'' ? std::string("''") : std::string(1, c);
     return out + '\'';
-}
-
-std::string lastLine(std::string text)
-{
-    while (!text.empty() && text.back() == '\n') text.pop_back();
-    return text.substr(text.find_last_of('\n') + 1);
 }
 
 // To whole steps of 5 dB around the points; gnuplot alone refuses a range that is empty.
@@ -100,11 +95,12 @@ Status draw(const std::string& title, const std::vector<size_t>& sizes, const st
         quoted(drafts[1].string()) + "\nreplot\nset output\n";
     const Status written = folder.publishText(text, script);
     if (!written) return written;
-    const Result<Ended> ended = runProgram({"gnuplot", "-d", script.string()}, [](const std::string&) {});
+    const Result<cli::Ended> ended =
+        cli::runProgram({"gnuplot", "-d", script.string()}, [](const std::string&) {});
     if (!ended) return ended.error();
     if (ended->code != 0)
         return Error{ErrorKind::CodecFailure,
-                     "gnuplot cannot draw " + svg.filename().string() + ": " + lastLine(ended->errors)};
+                     "gnuplot cannot draw " + svg.filename().string() + ": " + cli::lastLine(ended->errors)};
     const Status published = folder.publish(drafts[0], svg);
     if (!published) return published;
     return folder.publish(drafts[1], fs::path(svg).replace_extension(".png"));

@@ -3,6 +3,8 @@
 
 #include "../cli.h"
 
+#include <CLI/CLI.hpp>
+
 int main(int argc, char** argv)
 {
     using namespace gimg::gimrd;

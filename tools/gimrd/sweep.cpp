@@ -1,7 +1,7 @@
 // gimrd sweep: many meshes, coders and sizes; a report at the end.
+#include "../process.h"
 #include "command.h"
 #include "curves.h"
-#include "process.h"
 #include "report.h"
 #include "results.h"
 #include "sweep_folder.h"
@@ -10,12 +10,15 @@
 
 #include "../cli.h"
 
+#include <CLI/CLI.hpp>
 #include <pthread.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <cmath>
 #include <csignal>
+#include <cstdio>
+#include <cstdlib>
 #include <memory>
 #include <thread>
 
@@ -51,7 +54,7 @@ void leaveOnSignal(const std::shared_ptr<SweepFolder>& folder)
     std::thread([folder, signals] {
         int signal = 0;
         sigwait(&signals, &signal);
-        endPrograms();
+        cli::endPrograms();
         folder->close();
         std::fputs("\ngimrd: stopped; finished points stay, the same command goes on from here\n", stderr);
         ::_exit(128 + signal);
@@ -171,9 +174,9 @@ int sweep(SweepOptions& options)
     for (const std::string& mesh : options.meshes) options.request.meshes.emplace_back(mesh);
     if (options.oursOption->count() > 0) options.request.ours = options.ours;
     if (options.peersOption->count() > 0) options.request.peers = options.peers;
-    Part part;
+    cli::Part part;
     const bool isPart = options.partOption->count() > 0;
-    if (isPart) part = *parsePart(options.part);
+    if (isPart) part = *cli::parsePart(options.part);
     const std::string missing = isPart ? "" : missingForCurves();
     if (!missing.empty())
         return cli::fail("gimrd", cli::Refused,
@@ -194,7 +197,7 @@ int sweep(SweepOptions& options)
     std::vector<size_t> jobs;
     std::vector<bool> wanted(plan->meshes.size());
     for (size_t job = 0; job < plan->jobs.size(); ++job)
-        if (isInPart(job, part)) jobs.push_back(job), wanted[plan->jobs[job].mesh] = true;
+        if (part.has(job)) jobs.push_back(job), wanted[plan->jobs[job].mesh] = true;
     const std::vector<std::string> hashes = hashMeshes(*plan, wanted);
     const Result<bool> ran = runJobs(*plan, jobs, hashes, *folder, options.run);
     if (!ran) {
@@ -265,7 +268,7 @@ Command addSweep(CLI::App& app)
         sub->add_option("--part", options->part, "I/N: only jobs I, I+N, I+2N, ..., and no report")
             ->check(CLI::Validator(
                 [](const std::string& text) {
-                    return parsePart(text) ? "" : text + " is not I/N with 1 <= I <= N";
+                    return cli::parsePart(text) ? "" : text + " is not I/N with 1 <= I <= N";
                 },
                 "I/N"));
     sub->add_flag("--keep", options->run.keep, "Keep the decoded meshes");
@@ -273,7 +276,7 @@ Command addSweep(CLI::App& app)
         ->required();
     return {sub, [options] {
                 const int code = sweep(*options);
-                restIfEnding();
+                cli::restIfEnding();
                 return code;
             }};
 }

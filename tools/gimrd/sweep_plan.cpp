@@ -1,9 +1,8 @@
 #include "sweep_plan.h"
 
-#include "grid_image.h"
+#include "gimg/image_io.h"
 
 #include <algorithm>
-#include <charconv>
 #include <map>
 #include <set>
 
@@ -27,7 +26,7 @@ Result<std::vector<SweepMesh>> planMeshes(const SweepRequest& request)
         std::error_code failed;
         const std::uintmax_t bytes = std::filesystem::file_size(path, failed);
         if (!failed) mesh.bytes = bytes;
-        if (isGridImage(path)) mesh.imageSide = gridImageSide(path);
+        if (isGridImage(path)) mesh.imageSide = sideOfF32(path.string());
         const auto [place, isNew] = byName.emplace(mesh.name, mesh);
         if (!isNew)
             return badArgument(place->second.path.string() + " and " + path.string() +
@@ -122,18 +121,6 @@ Result<SweepPlan> planSweep(const SweepRequest& request, const std::vector<Coder
     return plan;
 }
 
-std::optional<Part> parsePart(const std::string& text)
-{
-    Part part;
-    const char* end = text.data() + text.size();
-    const auto index = std::from_chars(text.data(), end, part.index);
-    if (index.ec != std::errc() || index.ptr == end || *index.ptr != '/') return std::nullopt;
-    const auto count = std::from_chars(index.ptr + 1, end, part.count);
-    if (count.ec != std::errc() || count.ptr != end) return std::nullopt;
-    if (part.index < 1 || part.index > part.count) return std::nullopt;
-    return part;
-}
-
-bool isInPart(size_t job, const Part& part) { return job % part.count == part.index - 1; }
+bool isGridImage(const std::filesystem::path& path) { return path.extension() == ".f32"; }
 
 } // namespace gimg::gimrd

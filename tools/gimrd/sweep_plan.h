@@ -64,12 +64,7 @@ struct SweepPlan
 /// series that would write the same files.
 Result<SweepPlan> planSweep(const SweepRequest& request, const std::vector<CoderProgram>& coders);
 
-/// "2/8" is the second of eight parts: jobs 2, 10, 18, ...
-struct Part
-{
-    size_t index = 1, count = 1;
-};
-std::optional<Part> parsePart(const std::string& text);
-bool isInPart(size_t job, const Part& part); ///< job counts from 0
+/// Whether a file name says that the file holds a geometry image, as readF32() reads it.
+bool isGridImage(const std::filesystem::path& path);
 
 } // namespace gimg::gimrd

@@ -1,7 +1,5 @@
 #include "sweep_reference.h"
 
-#include "grid_image.h"
-
 #include "../cli.h"
 
 #include "gimg/decode.h"
@@ -44,10 +42,10 @@ Result<Surface> readSurface(const fs::path& path, const SweepMesh& mesh)
 // The grid mesh goes through a file, as a user's mesh would, so that the twins on its border are welded.
 Result<Surface> readImageSurface(const SweepMesh& mesh, SweepFolder& folder)
 {
-    const Result<FloatImage> image = readGridImage(mesh.path);
+    const Result<FloatImage> image = readF32(mesh.path.string());
     if (!image) return named(image.error(), mesh.path, mesh);
     const fs::path open = folder.temporary(".ply");
-    const Status written = writeMesh(openGridMesh(*image), open.string());
+    const Status written = writeMesh(gridMesh(*image), open.string());
     if (!written) return written.error();
     Result<Surface> surface = readSurface(open, mesh);
     std::error_code ignored;
@@ -97,7 +95,7 @@ Result<fs::path> makeGridImage(const SweepMesh& mesh, const std::string& sha256,
 {
     if (isGridImage(mesh.path)) return mesh.path;
     const fs::path place = folder.work(mesh.name) / hashed("grid-" + std::to_string(grid), sha256, ".f32");
-    if (gridImageSide(place) == grid) return place;
+    if (sideOfF32(place.string()) == grid) return place;
     EncodeOptions options;
     options.target = EncodeTarget::RawFloat;
     options.grid = grid;
@@ -107,7 +105,7 @@ Result<fs::path> makeGridImage(const SweepMesh& mesh, const std::string& sha256,
     const Result<DecodedImages> images = decodeImages(encoded->file);
     if (!images) return images.error();
     const fs::path draft = folder.temporary(".f32");
-    Status written = writeGridImage(images->geometry, draft);
+    Status written = writeF32(images->geometry, draft.string());
     if (written) written = folder.publish(draft, place);
     if (!written) return written.error();
     return place;

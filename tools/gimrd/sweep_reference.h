@@ -29,7 +29,7 @@ struct SweepReference
 
 /// Reads the mesh, writes it to the folder for the coders, and draws its thumbnail.
 /// @param sha256  of the mesh's file: what is made from it carries a part of that in its name
-/// Errors: those of readMesh, readTriangles and readGridImage; FileNotWritable.
+/// Errors: those of readMesh, readTriangles and readF32; FileNotWritable.
 Result<std::shared_ptr<SweepReference>> makeReference(const SweepMesh& mesh, const std::string& sha256,
                                                       SweepFolder& folder, int samples, int threads);
 

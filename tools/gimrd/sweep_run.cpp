@@ -1,10 +1,11 @@
 #include "sweep_run.h"
 
-#include "grid_image.h"
-#include "process.h"
+#include "../process.h"
+#include "../whole_file.h"
 #include "progress.h"
 #include "sweep_reference.h"
 
+#include "gimg/decode.h"
 #include "gimg/mesh_io.h"
 
 #include <algorithm>
@@ -26,11 +27,8 @@ using Json = nlohmann::ordered_json;
 
 std::string sha256Of(const fs::path& path)
 {
-    std::string sum;
-    const Result<Ended> ended = runProgram({"sha256sum", "--", path.string()}, [&](const std::string& line) {
-        sum = line.substr(line.starts_with('\\') ? 1 : 0, 64); // a backslash marks an escaped file name
-    });
-    return ended && ended->code == 0 && sum.size() == 64 ? sum : "";
+    const std::optional<cli::Contents> contents = cli::contentsOf(path.string());
+    return contents ? contents->sha256 : "";
 }
 
 // The versions of the packages a coder is made from, as far as dpkg knows them.
@@ -40,7 +38,7 @@ Json versionsOf(const CoderProgram& coder)
     if (coder.packages.empty()) return versions;
     std::vector<std::string> command = {"dpkg-query", "-W", "-f", "${Package} ${Version}\n"};
     command.insert(command.end(), coder.packages.begin(), coder.packages.end());
-    const Result<Ended> ended = runProgram(command, [&](const std::string& line) {
+    const Result<cli::Ended> ended = cli::runProgram(command, [&](const std::string& line) {
         const size_t space = line.find(' ');
         if (space != std::string::npos && space + 1 < line.size())
             versions[line.substr(0, space)] = line.substr(space + 1);
@@ -238,9 +236,9 @@ Status Runner::fill(Point& point, const CodedFile& coded, const Job& job, const 
         return Error{ErrorKind::CodecFailure, "made a file of " + std::to_string(coded.bytes) + " bytes"};
     Mesh decoded;
     if (coderOf(job).takesImage) {
-        const Result<FloatImage> image = readGridImage(coded.decoded);
+        const Result<FloatImage> image = readF32(coded.decoded.string());
         if (!image) return image.error();
-        decoded = openGridMesh(*image);
+        decoded = gridMesh(*image);
     } else {
         Result<Mesh> mesh = readTriangles(coded.decoded.string());
         if (!mesh) return mesh.error();
@@ -274,7 +272,7 @@ Status Runner::fill(Point& point, const CodedFile& coded, const Job& job, const 
 // Writes a point, whatever became of it.
 void Runner::settle(Work& work, const Point& point)
 {
-    restIfEnding();
+    cli::restIfEnding();
     const Clock::time_point now = Clock::now();
     const double seconds = std::chrono::duration<double>(now - work.before).count();
     work.before = now;

@@ -1,17 +1,19 @@
 #include "whole_file.h"
 
-#include "../cli.h"
+#include "cli.h"
 
 #include <fcntl.h>
 #include <openssl/evp.h>
 #include <unistd.h>
 
 #include <cerrno>
+#include <cstdio>
 #include <filesystem>
+#include <fstream>
 #include <memory>
 #include <random>
 
-namespace gimg::gimenc {
+namespace gimg::cli {
 namespace {
 
 namespace fs = std::filesystem;
@@ -63,7 +65,7 @@ bool writeWhole(const std::string& path, const void* bytes, std::size_t size)
 {
     std::error_code error;
     const fs::file_status there = fs::status(path, error);
-    if (fs::exists(there) && !fs::is_regular_file(there)) return cli::writeFile(path, bytes, size);
+    if (fs::exists(there) && !fs::is_regular_file(there)) return writeFile(path, bytes, size);
     fs::path target(path);
     if (fs::is_symlink(fs::symlink_status(target, error))) target = fs::weakly_canonical(target, error);
 
@@ -101,4 +103,4 @@ Contents contentsOf(const void* bytes, std::size_t size)
     return {size, hash.text()};
 }
 
-} // namespace gimg::gimenc
+} // namespace gimg::cli

@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-namespace gimg::gimrd {
+namespace gimg::cli {
 
 /// How a program ended.
 struct Ended
@@ -30,4 +30,4 @@ void endPrograms();
 /// Does not return after endPrograms(): what fails then fails for that reason, and nobody is to hear of it.
 void restIfEnding();
 
-} // namespace gimg::gimrd
+} // namespace gimg::cli

@@ -13,7 +13,7 @@
 #include <mutex>
 #include <set>
 
-namespace gimg::gimrd {
+namespace gimg::cli {
 namespace {
 
 constexpr size_t kErrorsKept = 4000;
@@ -154,4 +154,4 @@ void endPrograms()
     }
 }
 
-} // namespace gimg::gimrd
+} // namespace gimg::cli

@@ -5,7 +5,7 @@
 #include <optional>
 #include <string>
 
-namespace gimg::gimenc {
+namespace gimg::cli {
 
 /// Writes a file whole or not at all: under another name (.gimenc-...) in the same folder, then renamed, so
 /// that at no moment a part of it stands at `path`. Links are followed. What is there and is no regular file
@@ -22,4 +22,4 @@ struct Contents
 std::optional<Contents> contentsOf(const std::string& path);
 Contents contentsOf(const void* bytes, std::size_t size);
 
-} // namespace gimg::gimenc
+} // namespace gimg::cli
