@@ -185,6 +185,35 @@ Status checkScale(const Mesh& mesh, std::vector<std::string>& warnings)
 
 bool isImageSize(int n) { return n >= 3 && n <= BorderOptions::kLargestGrid && ((n - 1) & (n - 2)) == 0; }
 
+Result<codec::Encoder> encoderOf(const SquareDisk& square, const FloatImage& geometry,
+                                 const FloatImage& normals)
+{
+    codec::Source source;
+    source.grid = static_cast<uint32_t>(square.grid);
+    source.seam = {static_cast<uint32_t>(square.lowest), static_cast<uint32_t>(square.start), square.seam()};
+    source.xyz = geometry.samples;
+    source.normalGrid = static_cast<uint32_t>(normals.width);
+    source.normals = normals.samples;
+    auto encoder = codec::Encoder::prepare(source);
+    if (auto* error = std::get_if<codec::EncodeError>(&encoder)) return fromCodec(*error);
+    return std::move(std::get<codec::Encoder>(encoder));
+}
+
+// What an unfolding is worth: the PSNR of a small file. (That of the bare grid says little about it: seams
+// cost bytes, and a few dB either way.) -1 if there is no such file.
+double codedPsnr(const Unfolded& unfolded, const SurfaceMeasure& measure)
+{
+    constexpr size_t kBytes = 6000;
+    const Result<FloatImage> geometry = sampleGeometry(unfolded.square, unfolded.map, unfolded.square.grid);
+    if (!geometry) return -1;
+    const Result<codec::Encoder> encoder = encoderOf(unfolded.square, *geometry, {});
+    if (!encoder) return -1;
+    const Result<std::vector<uint8_t>> file = fileOf(encoder->encodeToBytes(kBytes));
+    if (!file) return -1;
+    const Result<double> psnr = decodedPsnr(*file, measure);
+    return psnr ? *psnr : -1;
+}
+
 // As many threads as asked for while it lives.
 class ThreadLimit
 {
@@ -234,9 +263,12 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     out.topology = topology(mesh);
 
     stage("cut", 0);
+    SurfaceMeasure measure(mesh);
     double cutSeconds = 0;
-    Result<Unfolded> unfolded =
-        unfold(mesh, {options.grid, options.lowest}, [&](const char* name, double fraction) {
+    Result<Unfolded> unfolded = unfold(
+        mesh, {options.grid, options.lowest},
+        [&](const Unfolded& candidate) { return codedPsnr(candidate, measure); },
+        [&](const char* name, double fraction) {
             if (cutSeconds == 0 && std::string_view(name) != "cut") cutSeconds = watch.lap();
             stage(name, fraction);
         });
@@ -264,19 +296,11 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     out.normals = options.normals;
     out.seconds.sample = watch.lap();
 
-    codec::Source source;
-    source.grid = static_cast<uint32_t>(square.grid);
-    source.seam = {static_cast<uint32_t>(square.lowest), static_cast<uint32_t>(square.start), square.seam()};
-    source.xyz = geometry->samples;
-    source.normalGrid = static_cast<uint32_t>(options.normals);
-    source.normals = normals->samples;
-    auto encoder = codec::Encoder::prepare(source);
-    if (auto* error = std::get_if<codec::EncodeError>(&encoder)) return fromCodec(*error);
-    SurfaceMeasure measure(mesh);
+    Result<codec::Encoder> encoder = encoderOf(square, *geometry, *normals);
+    if (!encoder) return encoder.error();
     out.seconds.code = watch.lap();
-    return MeshEncoder(std::make_unique<const Prepared>(
-        Prepared{std::move(out), std::move(std::get<codec::Encoder>(encoder)), std::move(measure),
-                 options.progress, options.threads}));
+    return MeshEncoder(std::make_unique<const Prepared>(Prepared{
+        std::move(out), std::move(*encoder), std::move(measure), options.progress, options.threads}));
 }
 
 Result<EncodedMesh> MeshEncoder::encode(const EncodeGoal& goal) const

@@ -1,9 +1,7 @@
 #include "gimg/unfold.h"
 
-#include "gimg/decode.h"
-#include "gimg/distance.h"
 #include "gimg/extrema.h"
-#include "gimg/sample.h"
+#include "gimg/stretch.h"
 
 #include <algorithm>
 #include <span>
@@ -26,19 +24,10 @@ Result<Unfolded> unfoldAlong(const Mesh& mesh, std::span<const int> extrema, con
     return Unfolded{std::move(cut), static_cast<int>(extrema.size()), std::move(*square), std::move(*map)};
 }
 
-// How near the sampled grid comes to the surface, with its border open. -1 if it cannot be told.
-double gridPsnr(const SurfaceMeasure& surface, const Unfolded& unfolded)
-{
-    const int n = unfolded.square.grid;
-    const Result<FloatImage> image = sampleGeometry(unfolded.square, unfolded.map, n);
-    if (!image) return -1;
-    const Result<SurfaceDistance> distance = surface.against(gridMesh(*image));
-    return distance ? distance->psnr() : -1;
-}
-
 } // namespace
 
-Result<Unfolded> unfold(const Mesh& mesh, const BorderOptions& options, const UnfoldProgress& progress)
+Result<Unfolded> unfold(const Mesh& mesh, const BorderOptions& options, const UnfoldJudge& judge,
+                        const UnfoldProgress& progress)
 {
     const Extrema extrema = findExtrema(mesh, {}, [&](double fraction) {
         if (progress) progress("cut", fraction);
@@ -49,9 +38,10 @@ Result<Unfolded> unfold(const Mesh& mesh, const BorderOptions& options, const Un
     Result<Unfolded> plain = unfoldAlong(mesh, {}, options, progress);
     if (!extended) return plain;
     if (!plain) return extended;
-    constexpr int kSamples = 50000;
-    const SurfaceMeasure surface(mesh, {kSamples});
-    return gridPsnr(surface, *extended) >= gridPsnr(surface, *plain) ? std::move(extended) : std::move(plain);
+    const auto quality = [&](const Unfolded& unfolded) {
+        return judge ? judge(unfolded) : -quarticStretchEnergy(unfolded.square.disk.mesh, unfolded.map.st);
+    };
+    return quality(*extended) >= quality(*plain) ? std::move(extended) : std::move(plain);
 }
 
 } // namespace gimg

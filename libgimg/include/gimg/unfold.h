@@ -19,11 +19,16 @@ struct Unfolded
 /// Called with the stage, "cut" or "parameterize", and the fraction of it that is done.
 using UnfoldProgress = std::function<void(const char* stage, double fraction)>;
 
+/// How good an unfolding is; more is better.
+using UnfoldJudge = std::function<double(const Unfolded&)>;
+
 /// Cut, layout and flattening. The cut is extended to the extrema if that is sure to help; where findExtrema
-/// expects less than half the energy to go, or the extended cut does not fit the border, the surface is
-/// flattened both ways and the one whose grid comes nearer to the surface is taken.
-/// @param mesh  connected, manifold, oriented
+/// expects less than half the energy to go, the surface is flattened both ways and the one that `judge` finds
+/// better is taken. An extended cut that does not fit the border is not taken.
+/// @param mesh   connected, manifold, oriented
+/// @param judge  if there is none, less of quarticStretchEnergy is better
 /// Errors: those of layOutBorder and flattenToSquare for the initial cut.
-Result<Unfolded> unfold(const Mesh& mesh, const BorderOptions& options, const UnfoldProgress& progress = {});
+Result<Unfolded> unfold(const Mesh& mesh, const BorderOptions& options, const UnfoldJudge& judge = {},
+                        const UnfoldProgress& progress = {});
 
 } // namespace gimg
