@@ -1,5 +1,5 @@
 #!/usr/bin/python3
-"""Prints the tables of docs/how-good.md from a sweep, and copies its curves to docs/images.
+"""Puts the tables of docs/how-good.md in from a sweep, and copies its curves to docs/images.
 
     docs/pictures/how_good.py report-output
 
@@ -10,17 +10,23 @@ import shutil
 import sys
 from pathlib import Path
 
-IMAGES = Path(__file__).resolve().parents[1] / "images"
+DOCS = Path(__file__).resolve().parents[1]
+IMAGES = DOCS / "images"
+PAGE = DOCS / "how-good.md"
 SHOWN = ["gim", "draco-lt", "draco-meshopt", "meshopt", "openjpeg", "jxl", "raw-zlib"]
 CURVES = {"mean.png": "how-good-mean.png", "curves/bunny.png": "how-good-bunny.png"}
 
 
 def table(header, rows):
-    print("| " + " | ".join(header) + " |")
-    print("|---|" + "--:|" * (len(header) - 1))
-    for row in rows:
-        print("| " + " | ".join(row) + " |")
-    print()
+    lines = ["| " + " | ".join(header) + " |", "|---|" + "--:|" * (len(header) - 1)]
+    return "\n".join(lines + ["| " + " | ".join(row) + " |" for row in rows])
+
+
+def put(page, name, text):
+    """Between the comments `<!-- name -->` and `<!-- end -->`."""
+    before, rest = page.split(f"<!-- {name} -->\n")
+    _, after = rest.split("<!-- end -->", 1)
+    return f"{before}<!-- {name} -->\n{text}\n<!-- end -->{after}"
 
 
 def main(folder):
@@ -31,7 +37,7 @@ def main(folder):
             points.setdefault(p["mesh"], {}).setdefault(p["coder"], {})[p["target"]] = p["psnr"]
     sizes = sorted({t for coders in points.values() for done in coders.values() for t in done})
 
-    print("dB of gimg / simplify + Draco:\n")
+    page = PAGE.read_text()
     rows = []
     for mesh, coders in sorted(points.items()):
         cells = []
@@ -43,16 +49,16 @@ def main(folder):
                 text[best] = f"**{text[best]}**"
             cells.append(" / ".join(text))
         rows.append([mesh] + cells)
-    table(["mesh"] + [f"{s:,}" for s in sizes], rows)
+    page = put(page, "meshes", table(["mesh"] + [f"{s:,}" for s in sizes], rows))
 
-    print("Mean dB over the meshes for which every coder has all sizes:\n")
     whole = [m for m, c in points.items() if all(c.get(k, {}).get(s) is not None for k in SHOWN if k in c for s in sizes)]
     rows = []
     for coder in SHOWN:
         means = [[points[m].get(coder, {}).get(s) for m in whole] for s in sizes]
         if whole and all(None not in column for column in means):
             rows.append([coder] + [f"{sum(column) / len(column):.1f}" for column in means])
-    table([f"{len(whole)} meshes"] + [f"{s:,}" for s in sizes], rows)
+    page = put(page, "means", table([f"{len(whole)} meshes"] + [f"{s:,}" for s in sizes], rows))
+    PAGE.write_text(page)
 
     for source, target in CURVES.items():
         if (folder / source).exists():
