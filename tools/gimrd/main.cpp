@@ -5,13 +5,19 @@
 
 #include <CLI/CLI.hpp>
 
+#include <vector>
+
 int main(int argc, char** argv)
 {
     using namespace gimg::gimrd;
     CLI::App app("Measures surfaces against each other, and rate against distortion.", "gimrd");
     app.set_version_flag("--version", GIMG_VERSION);
     app.require_subcommand(1);
-    const Command commands[] = {addCompare(app), addSweep(app), addBench(app)};
+    std::vector<Command> commands = {addCompare(app)};
+#ifdef GIMG_WITH_ADAPTERS
+    commands.push_back(addSweep(app));
+    commands.push_back(addBench(app));
+#endif
 
     if (const std::optional<int> exit = gimg::cli::parse(app, argc, argv)) return *exit;
     for (const Command& command : commands)
