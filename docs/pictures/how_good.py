@@ -13,8 +13,8 @@ from pathlib import Path
 DOCS = Path(__file__).resolve().parents[1]
 IMAGES = DOCS / "images"
 PAGE = DOCS / "how-good.md"
-SHOWN = ["gim", "draco-lt", "draco-meshopt", "meshopt", "openjpeg", "jxl", "raw-zlib"]
-CURVES = {"mean.png": "how-good-mean.png", "curves/bunny.png": "how-good-bunny.png"}
+SHOWN = ["gim", "draco-lt", "draco-meshopt", "meshopt"]
+CURVES = {"curves/bunny.png": "how-good-bunny.png"}
 
 
 def table(header, rows):
