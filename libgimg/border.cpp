@@ -166,6 +166,24 @@ std::optional<Layout> layoutAt(int lowest, const CutGraph& cut, const DiskMesh& 
     return std::nullopt;
 }
 
+// The star's centre at the corners; nothing if the cut is no star of four paths.
+std::optional<Layout> octahedralLayoutAt(int lowest, const CutGraph& cut, const DiskMesh& disk)
+{
+    const int side = lowest - 1;
+    if (cut.paths.size() != 4 || disk.sides.size() != 8 || side < 2) return std::nullopt;
+    for (const auto& [node, valence] : nodeValences(cut))
+        if (valence != 1 && valence != 4) return std::nullopt;
+    const int first = disk.origin[disk.sides[0].vertices.front()];
+    const Layout layout{lowest, nodeValences(cut).at(first) == 4 ? 0 : side / 2,
+                        std::vector<int>(4, side / 2)};
+    const std::vector<gim_side> word = seamWord(disk.sides, cut, layout.pathLength);
+    if (!codec::seamIsSimplicial(word.data(), static_cast<uint32_t>(word.size()),
+                                 static_cast<uint32_t>(layout.start), static_cast<uint32_t>(lowest),
+                                 static_cast<uint32_t>(lowest)))
+        return std::nullopt;
+    return layout;
+}
+
 Error doesNotFit(const CutGraph& cut, const char* what, int size)
 {
     const std::string paths = cut.paths.size() == 1 ? " path" : " paths";
@@ -176,8 +194,16 @@ Error doesNotFit(const CutGraph& cut, const char* what, int size)
 
 // The asked lowest level, or the smallest from the default on; preferably one whose border is at least twice
 // as long as the cut needs, so that lengths can follow the surface.
-Result<Layout> findLayout(const CutGraph& cut, const DiskMesh& disk, const Mesh& mesh, int grid, int asked)
+Result<Layout> findLayout(const CutGraph& cut, const DiskMesh& disk, const Mesh& mesh, int grid, int asked,
+                          SquareLayout kind)
 {
+    const int first = std::min(kDefaultLowest, std::max(3, (grid - 1) / 4 + 1));
+    if (kind == SquareLayout::Octahedral) {
+        if (const auto layout = octahedralLayoutAt(asked > 0 ? asked : first, cut, disk)) return *layout;
+        return Error{
+            ErrorKind::TargetUnreachable,
+            "the cut is no star of four paths, or the lowest level is too small: no octahedral layout"};
+    }
     const std::vector<int> minimum = minimalLengths(cut);
     std::vector<PathNeeds> needs(cut.paths.size());
     double total = 0;
@@ -191,7 +217,6 @@ Result<Layout> findLayout(const CutGraph& cut, const DiskMesh& disk, const Mesh&
         if (const auto layout = layoutAt(asked, cut, disk, needs, total, 1)) return *layout;
         return doesNotFit(cut, "a lowest level of", asked);
     }
-    const int first = std::min(kDefaultLowest, std::max(3, (grid - 1) / 4 + 1));
     for (int slack : {2, 1})
         for (int lowest = first; lowest <= grid; lowest = 2 * lowest - 1)
             if (const auto layout = layoutAt(lowest, cut, disk, needs, total, slack)) return *layout;
@@ -364,7 +389,7 @@ Result<SquareDisk> layOutBorder(const Mesh& mesh, const CutGraph& cut, const Bor
     Result<Layout> layout = Error{ErrorKind::TargetUnreachable, ""};
     for (int grid = options.grid != 0 ? options.grid : std::max(BorderOptions::kDefaultGrid, options.lowest);
          grid <= kLargestGrid && !layout.ok(); grid = 2 * grid - 1) {
-        layout = findLayout(cut, *disk, mesh, grid, options.lowest);
+        layout = findLayout(cut, *disk, mesh, grid, options.lowest, options.layout);
         square.grid = grid;
         if (options.grid != 0) break;
     }

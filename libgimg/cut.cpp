@@ -38,6 +38,22 @@ public:
         return extractPaths();
     }
 
+    CutGraph star(std::span<const int> tips)
+    {
+        std::fill(inCut_.begin(), inCut_.end(), false);
+        const int centre = centreOf(tips);
+        if (centre < 0) return {};
+        for (int tip : tips) {
+            const std::vector<int> path = shortestPath(centre, tip, ring(centre), ring(tip), kInfinity);
+            if (path.empty()) return {};
+            setPathCut(path, true);
+        }
+        CutGraph cut = extractPaths();
+        for (int round = 0; round < 2; ++round)
+            for (CutPath& path : cut.paths) straighten(path);
+        return cut;
+    }
+
 private:
     double edgeLength(int h) const
     {
@@ -215,6 +231,45 @@ private:
         return found;
     }
 
+    // All outgoing halfedges of v.
+    std::vector<int> ring(int v) const
+    {
+        std::vector<int> out;
+        forEdgesAt(v, [&](int h, int) { out.push_back(h); });
+        return out;
+    }
+
+    // The vertex with the least sum of distances to the tips that has more edges than there are tips.
+    int centreOf(std::span<const int> tips) const
+    {
+        std::vector<double> sum(mesh_.positions.size(), 0.0);
+        for (int tip : tips) {
+            std::vector<double> distance(mesh_.positions.size(), kInfinity);
+            DistanceQueue queue;
+            distance[tip] = 0;
+            queue.push({0.0, tip});
+            while (!queue.empty()) {
+                const auto [d, v] = queue.top();
+                queue.pop();
+                if (d > distance[v]) continue;
+                sum[v] += d;
+                forEdgesAt(v, [&](int h, int w) {
+                    const double through = d + edgeLength(h);
+                    if (through >= distance[w]) return;
+                    distance[w] = through;
+                    queue.push({through, w});
+                });
+            }
+        }
+        int best = -1;
+        for (int v = 0; v < mesh_.vertexCount(); ++v) {
+            if (he_.outgoing(v) < 0 || std::find(tips.begin(), tips.end(), v) != tips.end()) continue;
+            if (ring(v).size() <= tips.size()) continue;
+            if (best < 0 || sum[v] < sum[best]) best = v;
+        }
+        return best;
+    }
+
     // Outgoing halfedges of v in the sector around `first` that other cut edges bound.
     std::vector<int> sector(int first) const
     {
@@ -337,6 +392,8 @@ private:
 };
 
 } // namespace
+
+CutGraph starCut(const Mesh& mesh, std::span<const int> tips) { return Cutter(mesh).star(tips); }
 
 int CutGraph::nodeCount() const
 {

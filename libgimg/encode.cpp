@@ -266,18 +266,18 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     SurfaceMeasure measure(mesh);
     double cutSeconds = 0;
     Result<Unfolded> unfolded = unfold(
-        mesh, {options.grid, options.lowest},
+        mesh, {options.grid, options.lowest, options.layout},
         [&](const Unfolded& candidate) { return codedPsnr(candidate, measure); },
         [&](const char* name, double fraction) {
             if (cutSeconds == 0 && std::string_view(name) != "cut") cutSeconds = watch.lap();
             stage(name, fraction);
         });
     if (!unfolded) return unfolded.error();
-    const auto& [cut, extrema, square, map] = *unfolded;
+    const auto& [cut, layout, extrema, square, map] = *unfolded;
     out.cutNodes = cut.nodeCount();
     out.cutPaths = static_cast<int>(cut.paths.size());
+    out.layout = layout;
     out.cutExtrema = extrema;
-    out.cutLength = cutLength(mesh, cut);
     out.grid = square.grid;
     out.lowest = square.lowest;
     if (options.grid == 0 && options.lowest == 0 && out.grid > BorderOptions::kDefaultGrid)
@@ -294,6 +294,7 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     if (options.normals != 0) normals = sampleNormals(square, map, options.normals);
     if (!normals) return normals.error();
     out.normals = options.normals;
+    out.cutLength = seamLength(square, *geometry);
     out.seconds.sample = watch.lap();
 
     Result<codec::Encoder> encoder = encoderOf(square, *geometry, *normals);

@@ -15,21 +15,11 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kKept = 0.95; // of the energy; smaller gains are within what another layout would change
 
-// The mesh with few faces, its vertices some of the mesh's.
-Mesh simplified(const Mesh& mesh, int faces, std::vector<int>& vertexOf)
+double flattenedEnergy(const Mesh& mesh, const CutGraph& cut, SquareLayout layout)
 {
-    std::vector<uint8_t> onBoundary(mesh.positions.size(), 0);
-    const Halfedges he(mesh.faces, mesh.vertexCount());
-    for (int h = 0; h < he.count(); ++h)
-        if (he.onBoundary(h)) onBoundary[he.tail(h)] = onBoundary[he.head(h)] = 1;
-    Hierarchy hierarchy(mesh, onBoundary);
-    hierarchy.coarsenTo(faces / 2);
-    return hierarchy.current(vertexOf);
-}
-
-double flattenedEnergy(const Mesh& mesh, const CutGraph& cut)
-{
-    const Result<SquareDisk> square = layOutBorder(mesh, cut, {});
+    BorderOptions options;
+    options.layout = layout;
+    const Result<SquareDisk> square = layOutBorder(mesh, cut, options);
     if (!square) return kInfinity;
     const Result<Parameterization> map = flattenToSquare(*square);
     return map ? quarticStretchEnergy(square->disk.mesh, map->st) : kInfinity;
@@ -43,6 +33,14 @@ public:
     // The vertex farthest along edges from the cut and from the vertices `others`; -1 if there is no other.
     int from(const CutGraph& cut, const std::vector<int>& others) const
     {
+        std::vector<int> sources = others;
+        for (const CutPath& path : cut.paths)
+            sources.insert(sources.end(), path.vertices.begin(), path.vertices.end());
+        return from(sources);
+    }
+
+    int from(const std::vector<int>& sources) const
+    {
         std::vector<double> distance(mesh_.positions.size(), kInfinity);
         using Entry = std::pair<double, int>;
         std::priority_queue<Entry, std::vector<Entry>, std::greater<>> queue;
@@ -51,9 +49,7 @@ public:
             distance[v] = d;
             queue.push({d, v});
         };
-        for (const CutPath& path : cut.paths)
-            for (int v : path.vertices) reach(v, 0);
-        for (int v : others) reach(v, 0);
+        for (int v : sources) reach(v, 0);
         int last = -1;
         while (!queue.empty()) {
             const auto [d, v] = queue.top();
@@ -78,15 +74,32 @@ private:
 
 } // namespace
 
+SimplifiedMesh simplify(const Mesh& mesh, int faces)
+{
+    std::vector<uint8_t> onBoundary(mesh.positions.size(), 0);
+    const Halfedges he(mesh.faces, mesh.vertexCount());
+    for (int h = 0; h < he.count(); ++h)
+        if (he.onBoundary(h)) onBoundary[he.tail(h)] = onBoundary[he.head(h)] = 1;
+    Hierarchy hierarchy(mesh, onBoundary);
+    hierarchy.coarsenTo(faces / 2);
+    SimplifiedMesh coarse;
+    coarse.mesh = hierarchy.current(coarse.vertexOf);
+    return coarse;
+}
+
 Extrema findExtrema(const Mesh& mesh, const ExtremaOptions& options, const Progress& progress)
 {
+    return findExtrema(simplify(mesh, options.faces), options, progress);
+}
+
+Extrema findExtrema(const SimplifiedMesh& simplified, const ExtremaOptions& options, const Progress& progress)
+{
     constexpr double kTypicalCandidates = 8; // tells progress no more than roughly
-    std::vector<int> vertexOf;
-    const Mesh coarse = simplified(mesh, options.faces, vertexOf);
+    const Mesh& coarse = simplified.mesh;
     const FarthestVertex farthest(coarse);
     Extrema found;
     CutGraph cut = cutToDisk(coarse);
-    found.energyWithout = found.energyWith = flattenedEnergy(coarse, cut);
+    found.energyWithout = found.energyWith = flattenedEnergy(coarse, cut, SquareLayout::Cut);
     std::vector<int> failed;
     double tried = 0;
     for (int rejections = 0; rejections < options.rejections; ++tried) {
@@ -96,7 +109,7 @@ Extrema findExtrema(const Mesh& mesh, const ExtremaOptions& options, const Progr
         if (candidate < 0) break;
         found.vertices.push_back(candidate);
         CutGraph extended = cutToDisk(coarse, found.vertices);
-        const double energy = flattenedEnergy(coarse, extended);
+        const double energy = flattenedEnergy(coarse, extended, SquareLayout::Cut);
         if (energy < kKept * found.energyWith) {
             found.energyWith = energy;
             cut = std::move(extended);
@@ -107,8 +120,27 @@ Extrema findExtrema(const Mesh& mesh, const ExtremaOptions& options, const Progr
             ++rejections;
         }
     }
-    for (int& v : found.vertices) v = vertexOf[v];
+    for (int& v : found.vertices) v = simplified.vertexOf[v];
     return found;
+}
+
+StarTips findStarTips(const SimplifiedMesh& simplified)
+{
+    constexpr size_t kSpares = 2;
+    const FarthestVertex farthest(simplified.mesh);
+    std::vector<int> tips = {farthest.from(std::vector<int>{simplified.mesh.faces[0][0]})};
+    while (tips.size() < 4 + kSpares && tips.back() >= 0) tips.push_back(farthest.from(tips));
+    StarTips best;
+    best.energy = kInfinity;
+    for (size_t last = 3; last < tips.size() && tips[last] >= 0; ++last) {
+        const std::vector<int> four = {tips[0], tips[1], tips[2], tips[last]};
+        const CutGraph star = starCut(simplified.mesh, four);
+        const double energy = flattenedEnergy(simplified.mesh, star, SquareLayout::Octahedral);
+        if (!(energy < best.energy)) continue;
+        best = {four, energy};
+    }
+    for (int& v : best.vertices) v = simplified.vertexOf[v];
+    return best;
 }
 
 } // namespace gimg

@@ -1,8 +1,10 @@
 #include "gimg/flatten.h"
 
+#include "border_ties.h"
 #include "gimg/mean_value.h"
 #include "gimg/stretch.h"
 #include "hierarchy.h"
+#include "stretch_descent.h"
 #include "stretch_element.h"
 
 #include <Eigen/Dense>
@@ -118,6 +120,27 @@ struct Level
             position.push_back(st[v]);
         }
     }
+    // Newton descent with the border where it is, or sliding where `ties` let it.
+    void descend(const BorderTies* ties, const DescentOptions& options)
+    {
+        if (!ties) {
+            minimizeStretch(mesh, fixed, position, options);
+            return;
+        }
+        std::vector<Freedom> freedom(vertexOf.size());
+        std::vector<std::array<int, 2>> row(ties->leader.size(), {-1, -1});
+        int unknowns = 0;
+        for (const Triangle& f : mesh.faces)
+            for (int k : f) {
+                const int v = vertexOf[k], leader = ties->leader[v], turns = ties->motion[v].turns;
+                for (int c = 0; c < 2; ++c)
+                    if (ties->free[leader][c] && row[leader][c] < 0) row[leader][c] = unknowns++;
+                // s of a copy that is turned by a quarter is -t of its leader, and so on.
+                freedom[k].row = turns % 2 == 0 ? row[leader] : std::array{row[leader][1], row[leader][0]};
+                freedom[k].sign = {turns == 1 || turns == 2 ? -1.0 : 1.0, turns >= 2 ? -1.0 : 1.0};
+            }
+        minimizeStretch(mesh, freedom, unknowns, position, options);
+    }
     void storePositions(std::vector<Vec2>& st) const
     {
         for (size_t i = 0; i < vertexOf.size(); ++i) st[vertexOf[i]] = position[i];
@@ -185,7 +208,12 @@ Status startCoarsest(Level& level)
 
 Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progress& progress)
 {
-    constexpr DescentOptions kFirstDescent{50, 1e-4}, kDescent{30, 1e-3}, kLastDescent{12, 1e-3};
+    constexpr DescentOptions kFirstDescent{50, 1e-4}, kReleaseDescent{200, 1e-4}, kDescent{30, 1e-3},
+        kLastDescent{12, 1e-3};
+    // From so many vertices on the seam may slide: fewer do not tell where to.
+    constexpr int kReleased = 500;
+    const BorderTies ties = borderTies(square);
+    bool released = false;
     const Mesh& disk = square.disk.mesh;
     Parameterization result;
     result.st = square.borderPosition;
@@ -196,7 +224,7 @@ Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progres
 
     Level coarsest(hierarchy, square.squareSides, result.st);
     if (const Status started = startCoarsest(coarsest); !started) return started.error();
-    minimizeStretch(coarsest.mesh, coarsest.fixed, coarsest.position, kFirstDescent);
+    coarsest.descend(nullptr, kFirstDescent);
     coarsest.storePositions(result.st);
 
     while (!hierarchy.isFull()) {
@@ -211,8 +239,14 @@ Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progres
         }
         sweepVertices(disk, hierarchy, square.squareSides, result.st);
         Level level(hierarchy, square.squareSides, result.st);
-        minimizeStretch(level.mesh, level.fixed, level.position,
-                        hierarchy.isFull() ? kLastDescent : kDescent);
+        const bool release = hierarchy.isFull() || hierarchy.interiorCount() >= kReleased;
+        if (!release)
+            level.descend(nullptr, kDescent);
+        else if (!released)
+            level.descend(&ties, kReleaseDescent);
+        else
+            level.descend(&ties, hierarchy.isFull() ? kLastDescent : kDescent);
+        released = release;
         level.storePositions(result.st);
         if (progress) progress(0.1 + 0.9 * hierarchy.interiorCount() / std::max(1, interior));
     }

@@ -1,6 +1,8 @@
 #include "gimg/sample.h"
 
 #include "codec/border.h"
+#include "codec/seam.h"
+#include "lifts.h"
 #include "stretch_element.h"
 
 #include <algorithm>
@@ -61,37 +63,23 @@ void rasterize(const std::array<Vec2, 3>& corner, const std::array<Vec3, 3>& val
         }
 }
 
-// Value at parameter u of a path, always computed in the path's own direction.
-Vec3 alongPath(const CutPath& path, const std::vector<double>& parameter,
-               const std::vector<Vec3>& surfaceValue, double u)
+// Border samples that are one on the surface get the value of the one that a triangle holds best.
+void mergeMates(const SquareDisk& square, Image& image)
 {
-    const size_t upper = static_cast<size_t>(
-        std::clamp<long>(std::upper_bound(parameter.begin(), parameter.end(), u) - parameter.begin(), 1,
-                         static_cast<long>(parameter.size()) - 1));
-    const double w = (u - parameter[upper - 1]) / (parameter[upper] - parameter[upper - 1]);
-    const Vec3& from = surfaceValue[path.vertices[upper - 1]];
-    const Vec3& to = surfaceValue[path.vertices[upper]];
-    if (w == 0) return from;
-    if (w == 1) return to;
-    return (1 - w) * from + w * to;
-}
-
-void sampleBorder(const SquareDisk& square, const std::vector<Vec3>& surfaceValue, Image& image)
-{
-    const int ratio = (image.n - 1) / (square.lowest - 1);
-    const int perimeter = 4 * (image.n - 1);
-    int begin = square.start * ratio;
-    for (const DiskSide& side : square.disk.sides) {
-        const int length = square.pathLength[side.path] * ratio;
-        for (int k = 0; k <= length; ++k) {
-            const double u = static_cast<double>(side.reversed ? length - k : k) / ratio;
-            const size_t at = codec::borderSample(static_cast<uint32_t>(image.n),
-                                                  static_cast<uint32_t>((begin + k) % perimeter));
-            image.inside[at] = 1;
-            image.value[at] =
-                alongPath(square.cut.paths[side.path], square.pathParameter[side.path], surfaceValue, u);
-        }
-        begin += length;
+    const std::uint32_t n = static_cast<std::uint32_t>(image.n);
+    const std::vector<std::uint32_t> classes = codec::borderClasses(
+        {static_cast<std::uint32_t>(square.lowest), static_cast<std::uint32_t>(square.start), square.seam()},
+        n);
+    std::vector<size_t> best(classes.size());
+    const auto sample = [&](size_t position) {
+        return size_t{codec::borderSample(n, static_cast<std::uint32_t>(position))};
+    };
+    for (size_t k = 0; k < classes.size(); ++k) best[k] = sample(k);
+    for (size_t k = 0; k < classes.size(); ++k)
+        if (image.inside[sample(k)] > image.inside[best[classes[k]]]) best[classes[k]] = sample(k);
+    for (size_t k = 0; k < classes.size(); ++k) {
+        image.value[sample(k)] = image.value[best[classes[k]]];
+        image.inside[sample(k)] = image.inside[best[classes[k]]];
     }
 }
 
@@ -107,16 +95,19 @@ Result<Image> sampleValues(const SquareDisk& square, const Parameterization& par
                                                  std::to_string(BorderOptions::kLargestGrid)};
     Image image(n);
     const DiskMesh& disk = square.disk;
-    for (const Triangle& f : disk.mesh.faces) {
+    const Result<std::vector<Lift>> lifts = liftsOverSquare(square, borderTies(square), parameterization.st);
+    if (!lifts) return lifts.error();
+    for (const Lift& lift : *lifts) {
+        const Triangle& f = disk.mesh.faces[lift.face];
         std::array<Vec2, 3> corner;
         std::array<Vec3, 3> value;
         for (int k = 0; k < 3; ++k) {
-            corner[k] = parameterization.st[f[k]] * (n - 1);
+            corner[k] = lift.motion(parameterization.st[f[k]]) * (n - 1);
             value[k] = surfaceValue[disk.origin[f[k]]];
         }
         rasterize(corner, value, image);
     }
-    sampleBorder(square, surfaceValue, image);
+    mergeMates(square, image);
     for (size_t at = 0; at < image.value.size(); ++at)
         if (image.inside[at] <= -kHair)
             return Error{ErrorKind::FlippedTriangle, "grid point " + std::to_string(at % n) + ", " +
@@ -151,6 +142,24 @@ Result<FloatImage> sampleNormals(const SquareDisk& square, const Parameterizatio
         v = length > 0 ? Vec3(v / length) : Vec3(0, 0, 1);
     }
     return toFloat(*image);
+}
+
+double seamLength(const SquareDisk& square, const FloatImage& geometry)
+{
+    const std::uint32_t n = static_cast<std::uint32_t>(geometry.width), perimeter = 4 * (n - 1);
+    const std::uint32_t ratio = (n - 1) / static_cast<std::uint32_t>(square.lowest - 1);
+    const auto at = [&](std::uint32_t position) {
+        const float* p = &geometry.samples[3 * size_t{codec::borderSample(n, position % perimeter)}];
+        return Vec3(p[0], p[1], p[2]);
+    };
+    double length = 0;
+    std::uint32_t begin = static_cast<std::uint32_t>(square.start) * ratio;
+    for (const gim_side& side : square.seam()) {
+        for (std::uint32_t k = 0; k < side.length * ratio && side.kind != GIM_SIDE_MATE; ++k)
+            length += (at(begin + k + 1) - at(begin + k)).norm();
+        begin += side.length * ratio;
+    }
+    return length;
 }
 
 } // namespace gimg

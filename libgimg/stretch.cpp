@@ -1,5 +1,6 @@
 #include "gimg/stretch.h"
 
+#include "stretch_descent.h"
 #include "stretch_element.h"
 
 #include <Eigen/CholmodSupport>
@@ -47,12 +48,9 @@ template <class Term> double orderedSum(int count, std::vector<double>& scratch,
 class StretchDescent
 {
 public:
-    StretchDescent(const Mesh& mesh, const std::vector<bool>& fixed, std::vector<Vec2>& st)
-        : mesh_(mesh), st_(st), unknown_(mesh.positions.size(), -1)
+    StretchDescent(const Mesh& mesh, const std::vector<Freedom>& freedom, int unknowns, std::vector<Vec2>& st)
+        : mesh_(mesh), freedom_(freedom), unknowns_(unknowns), st_(st)
     {
-        for (const Triangle& f : mesh.faces)
-            for (int v : f)
-                if (!fixed[v] && unknown_[v] < 0) unknown_[v] = unknowns_++;
         elements_.reserve(mesh.faces.size());
         for (const Triangle& f : mesh.faces)
             elements_.emplace_back(mesh.positions[f[0]], mesh.positions[f[1]], mesh.positions[f[2]]);
@@ -92,12 +90,9 @@ private:
                           [&](int f) { return elements_[f].energy(corners(f, st)); });
     }
 
-    // Row of the local unknown k (0..2: s of corner k, 3..5: t), -1 where the vertex is fixed.
-    int row(int f, int k) const
-    {
-        const int u = unknown_[mesh_.faces[f][k % 3]];
-        return u < 0 ? -1 : 2 * u + k / 3;
-    }
+    // Row and sign of the local unknown k (0..2: s of corner k, 3..5: t); the row is -1 where it is fixed.
+    int row(int f, int k) const { return freedom_[mesh_.faces[f][k % 3]].row[k / 3]; }
+    double sign(int f, int k) const { return freedom_[mesh_.faces[f][k % 3]].sign[k / 3]; }
 
     void buildPattern()
     {
@@ -107,7 +102,7 @@ private:
                 for (int j = 0; j < 6; ++j)
                     if (row(f, i) >= row(f, j) && row(f, j) >= 0)
                         entries.emplace_back(row(f, i), row(f, j), 0.0);
-        hessian_.resize(2 * unknowns_, 2 * unknowns_);
+        hessian_.resize(unknowns_, unknowns_);
         hessian_.setFromTriplets(entries.begin(), entries.end());
         hessian_.makeCompressed();
         slot_.assign(elements_.size() * 36, -1);
@@ -128,16 +123,16 @@ private:
     {
         tbb::parallel_for(0, mesh_.faceCount(),
                           [&](int f) { derivatives_[f] = elements_[f].derivatives(corners(f, st_)); });
-        gradient_.setZero(2 * unknowns_);
+        gradient_.setZero(unknowns_);
         double* values = hessian_.valuePtr();
         std::fill(values, values + hessian_.nonZeros(), 0.0);
         for (int f = 0; f < mesh_.faceCount(); ++f) {
             const StretchElement::Derivatives& d = derivatives_[f];
             for (int i = 0; i < 6; ++i) {
-                if (row(f, i) >= 0) gradient_[row(f, i)] += d.gradient[i];
+                if (row(f, i) >= 0) gradient_[row(f, i)] += sign(f, i) * d.gradient[i];
                 for (int j = 0; j < 6; ++j) {
                     const int slot = slot_[static_cast<size_t>(f) * 36 + 6 * i + j];
-                    if (slot >= 0) values[slot] += d.hessian(i, j);
+                    if (slot >= 0) values[slot] += sign(f, i) * sign(f, j) * d.hessian(i, j);
                 }
             }
         }
@@ -147,19 +142,25 @@ private:
     bool factorize()
     {
         for (double shift = 1e-10; shift < 1; shift *= 100) {
-            for (int k = 0; k < 2 * unknowns_; ++k)
-                hessian_.valuePtr()[hessian_.outerIndexPtr()[k]] *= 1 + shift;
+            for (int k = 0; k < unknowns_; ++k) hessian_.valuePtr()[hessian_.outerIndexPtr()[k]] *= 1 + shift;
             solver_.factorize(hessian_);
             if (solver_.info() == Eigen::Success) return true;
         }
         return false;
     }
 
+    Vec2 movement(int v, const Eigen::VectorXd& step) const
+    {
+        Vec2 by = Vec2::Zero();
+        for (int c = 0; c < 2; ++c)
+            if (freedom_[v].row[c] >= 0) by[c] = freedom_[v].sign[c] * step[freedom_[v].row[c]];
+        return by;
+    }
+
     void moved(const Eigen::VectorXd& step, double t, std::vector<Vec2>& out) const
     {
         out = st_;
-        for (size_t v = 0; v < out.size(); ++v)
-            if (unknown_[v] >= 0) out[v] += t * step.segment<2>(2 * unknown_[v]);
+        for (size_t v = 0; v < out.size(); ++v) out[v] += t * movement(static_cast<int>(v), step);
     }
 
     // Largest t at which no triangle has collapsed yet.
@@ -169,10 +170,7 @@ private:
         for (int f = 0; f < mesh_.faceCount(); ++f) {
             const std::array<Vec2, 3> p = corners(f, st_);
             Vec2 d[3];
-            for (int k = 0; k < 3; ++k) {
-                const int u = unknown_[mesh_.faces[f][k]];
-                d[k] = u < 0 ? Vec2(0, 0) : Vec2(step.segment<2>(2 * u));
-            }
+            for (int k = 0; k < 3; ++k) d[k] = movement(mesh_.faces[f][k], step);
             limit = std::min(limit, firstCollapse(p, {d[0], d[1], d[2]}));
         }
         return limit;
@@ -202,9 +200,9 @@ private:
     }
 
     const Mesh& mesh_;
+    const std::vector<Freedom>& freedom_;
+    int unknowns_;
     std::vector<Vec2>& st_;
-    std::vector<int> unknown_; // per vertex: its index among the free ones, or -1
-    int unknowns_ = 0;
     std::vector<StretchElement> elements_;
     std::vector<StretchElement::Derivatives> derivatives_;
     std::vector<int> slot_; // where entry (i,j) of a face's 6 x 6 block lies among the matrix values
@@ -248,11 +246,25 @@ int flippedTriangles(const std::vector<Triangle>& faces, const std::vector<Vec2>
     return flipped;
 }
 
+double minimizeStretch(const Mesh& mesh, const std::vector<Freedom>& freedom, int unknowns,
+                       std::vector<Vec2>& st, const DescentOptions& options)
+{
+    const OneBlasThread oneThread;
+    return StretchDescent(mesh, freedom, unknowns, st).run(options);
+}
+
 double minimizeStretch(const Mesh& mesh, const std::vector<bool>& fixed, std::vector<Vec2>& st,
                        const DescentOptions& options)
 {
-    const OneBlasThread oneThread;
-    return StretchDescent(mesh, fixed, st).run(options);
+    std::vector<Freedom> freedom(mesh.positions.size());
+    int unknowns = 0;
+    for (const Triangle& f : mesh.faces)
+        for (int v : f)
+            if (!fixed[v] && freedom[v].row[0] < 0) {
+                freedom[v].row = {unknowns, unknowns + 1};
+                unknowns += 2;
+            }
+    return minimizeStretch(mesh, freedom, unknowns, st, options);
 }
 
 } // namespace gimg

@@ -2,6 +2,7 @@
 
 #include "gimg/mean_value.h"
 #include "gimg/stretch.h"
+#include "border_ties.h"
 #include "hierarchy.h"
 #include "shapes.h"
 #include "stretch_element.h"
@@ -157,8 +158,13 @@ TEST_P(FlattenShape, EmbedsWithoutFlippedTriangles)
     for (const Triangle& f : square->disk.mesh.faces)
         area += doubleArea({map->st[f[0]], map->st[f[1]], map->st[f[2]]});
     EXPECT_NEAR(area / 2, 1.0, 1e-9);
-    for (size_t v = 0; v < map->st.size(); ++v)
-        EXPECT_TRUE(square->squareSides[v] == 0 || map->st[v] == square->borderPosition[v]);
+    const BorderTies ties = borderTies(*square);
+    for (size_t v = 0; v < map->st.size(); ++v) {
+        const int leader = ties.leader[v];
+        EXPECT_LT((ties.motion[v](map->st[leader]) - map->st[v]).norm(), 1e-12) << "vertex " << v;
+        for (int c = 0; c < 2; ++c)
+            EXPECT_TRUE(ties.free[leader][c] || map->st[leader][c] == square->borderPosition[leader][c]);
+    }
     EXPECT_NEAR(map->efficiency, stretchEfficiency(square->disk.mesh, map->st), 1e-12);
     EXPECT_GT(map->efficiency, 0.15);
 }

@@ -29,6 +29,9 @@ void addOptions(CLI::App& app, Arguments& a)
     app.add_option("--grid", a.grid, "samples a side, 2^j + 1 (default: 257, more if the cut needs it)");
     app.add_option("--lowest", a.lowest,
                    "samples a side of the lowest level of detail, 2^l + 1 (default: 33, or as needed)");
+    app.add_option("--layout", a.layout,
+                   "cut, octahedral (a closed surface of genus 0 folds up from the four sides), auto")
+        ->check(CLI::IsMember({"auto", "cut", "octahedral"}));
     auto* target = app.add_option_group("target", "what the file is made for; exactly one");
     target->add_option("--bytes", a.bytes, "size of the whole file, never exceeded")->check(positive);
     target->add_option("--psnr", a.psnr, "surface PSNR in dB, met within 0.5 dB above")->check(positive);
@@ -97,6 +100,7 @@ std::vector<std::string> fileOptions(const Arguments& a)
     if (!a.raw.empty()) add("--raw", a.raw);
     if (a.grid != 0) add("--grid", std::to_string(a.grid));
     if (a.lowest != 0) add("--lowest", std::to_string(a.lowest));
+    if (a.layout != "auto") add("--layout", a.layout);
     if (a.normals != 0) add("--normals", std::to_string(a.normals));
     if (!a.component.empty()) add("--component", a.component);
     if (a.weld != "auto") add("--weld", a.weld);
@@ -114,6 +118,9 @@ EncodeOptions encodeOptions(const Arguments& a)
     EncodeOptions options;
     options.grid = a.grid;
     options.lowest = a.lowest;
+    options.layout = a.layout == "cut"          ? SquareLayout::Cut
+                     : a.layout == "octahedral" ? SquareLayout::Octahedral
+                                                : SquareLayout::Auto;
     options.normals = a.normals;
     options.threads = a.threads;
     if (a.bytes) {

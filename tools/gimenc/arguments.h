@@ -19,6 +19,7 @@ struct Arguments
     std::optional<size_t> bytes; ///< of bytes, psnr and raw exactly one is set
     std::optional<double> psnr;
     std::string raw, component, json;
+    std::string layout = "auto";
     std::string weld = "auto";
     bool resume = false;
     bool quiet = false;

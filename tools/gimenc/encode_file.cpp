@@ -50,6 +50,7 @@ nlohmann::ordered_json report(const EncodedMesh& encoded, double read, double to
     json["boundaries"] = encoded.topology.boundaries;
     json["grid"] = encoded.grid;
     json["lowest"] = encoded.lowest;
+    json["layout"] = encoded.layout == SquareLayout::Octahedral ? "octahedral" : "cut";
     json["bytes"] = {{"total", encoded.file.size()},
                      {"container", info.container_bytes},
                      {"sideband", info.seam_bytes},

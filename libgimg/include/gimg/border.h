@@ -12,6 +12,15 @@
 
 namespace gimg {
 
+/// How the cut lies on the border of the square.
+enum class SquareLayout
+{
+    Auto,      ///< the better of the two for closed surfaces of genus 0 (see unfold), else Cut
+    Cut,       ///< any cut; its paths' lengths follow the surface
+    Octahedral ///< a star of four paths (see starCut): its centre at the corners, its tips at the middles of
+               ///< the sides, so that each side folds onto itself (Praun & Hoppe 2003)
+};
+
 struct BorderOptions
 {
     static constexpr int kDefaultGrid = 257;
@@ -20,6 +29,7 @@ struct BorderOptions
     int grid = 0; ///< samples a side, 2^j + 1; 0: 257, or the next larger grid that can hold the cut
     int lowest =
         0; ///< lowest level of detail, 2^l + 1 <= grid; 0: 33 (less for small grids), or the next that fits
+    SquareLayout layout = SquareLayout::Auto; ///< layOutBorder takes Auto for Cut
 };
 
 /// A disk with its boundary laid out on the unit square.

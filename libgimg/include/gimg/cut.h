@@ -38,4 +38,9 @@ double cutLength(const Mesh& mesh, const CutGraph& cut);
 /// Source: thesis §3.1.2.
 CutGraph cutToDisk(const Mesh& mesh, std::span<const int> extrema = {});
 
+/// Opens a closed surface of genus 0 along paths from one vertex, the centre, to each of the tips: the
+/// shortest ones that touch each other in the centre only. The centre is the vertex nearest to all tips
+/// together that has enough edges. No paths where that fails.
+CutGraph starCut(const Mesh& mesh, std::span<const int> tips);
+
 } // namespace gimg

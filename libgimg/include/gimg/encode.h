@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gimg/border.h"
 #include "gimg/mesh.h"
 #include "gimg/result.h"
 
@@ -33,8 +34,9 @@ struct EncodeGoal
 
 struct EncodeOptions : EncodeGoal
 {
-    int grid = 0;    ///< samples a side, 2^j + 1; 0 chooses, see BorderOptions
-    int lowest = 0;  ///< lowest level of detail; 0 chooses
+    int grid = 0;   ///< samples a side, 2^j + 1; 0 chooses, see BorderOptions
+    int lowest = 0; ///< lowest level of detail; 0 chooses
+    SquareLayout layout = SquareLayout::Auto;
     int normals = 0; ///< samples a side of the normal image, 2^j + 1; 0: none
     int threads = 0; ///< 0: one a core. The file does not depend on it.
     EncodeProgress progress;
@@ -54,11 +56,12 @@ struct EncodedMesh
     int normals = 0;
     double psnr =
         0; ///< of the decoded finest level against the input; infinite if they agree, 0 if nothing is left
-    double stretchEfficiency = 0; ///< see stretchEfficiency()
+    double stretchEfficiency = 0;            ///< see stretchEfficiency()
+    SquareLayout layout = SquareLayout::Cut; ///< Cut or Octahedral
     int cutNodes = 0;
     int cutPaths = 0;
     int cutExtrema = 0;   ///< tips that the cut was extended to
-    double cutLength = 0; ///< on the surface, in the mesh's unit
+    double cutLength = 0; ///< of the seam and the boundary as sampled, in the mesh's unit
     EncodeSeconds seconds;
     std::vector<std::string> warnings;
 };

@@ -7,9 +7,19 @@
 
 namespace gimg {
 
+/// A mesh with fewer faces whose vertices are some of the original's.
+struct SimplifiedMesh
+{
+    Mesh mesh;
+    std::vector<int> vertexOf; ///< the original's index of each vertex
+};
+
+/// @param faces  to be left, where the boundary lets it be so coarse
+SimplifiedMesh simplify(const Mesh& mesh, int faces);
+
 struct ExtremaOptions
 {
-    int faces = 4000;   ///< of the simplified mesh, where its boundary lets it be so coarse
+    int faces = 4000;   ///< of the simplified mesh
     int most = 24;      ///< extrema to find at most
     int rejections = 4; ///< candidates in a row that may fail before the search ends
 };
@@ -31,5 +41,19 @@ struct Extrema
 /// Source: thesis §3.1.2, iterated cut augmentation; there the triangle most stretched by a Floater map is
 /// the candidate, and the first failure ends the search.
 Extrema findExtrema(const Mesh& mesh, const ExtremaOptions& options = {}, const Progress& progress = {});
+
+/// The same for a mesh that is simplified already.
+Extrema findExtrema(const SimplifiedMesh& coarse, const ExtremaOptions& options, const Progress& progress);
+
+/// Four vertices that starCut opens a closed surface of genus 0 to.
+struct StarTips
+{
+    std::vector<int> vertices; ///< four, or none where no star was found
+    double energy = 0;         ///< quarticStretchEnergy of the simplified mesh in the octahedral layout
+};
+
+/// Tips far from each other: each is the vertex farthest from those before; for the last, the two next
+/// farthest are tried too, on the simplified mesh.
+StarTips findStarTips(const SimplifiedMesh& coarse);
 
 } // namespace gimg

@@ -8,7 +8,7 @@
 
 namespace gimg {
 
-/// One (s,t) in the unit square for every vertex of a disk.
+/// One (s,t) for every vertex of a disk.
 struct Parameterization
 {
     std::vector<Vec2> st;
@@ -18,11 +18,15 @@ struct Parameterization
 /// Called now and then with the fraction done, in [0,1].
 using Progress = std::function<void(double)>;
 
-/// Maps the disk onto the unit square with the border where the layout put it. The interior is coarsened, the
-/// coarse mesh gets mean-value coordinates, and vertices come back a level at a time, each placed inside its
-/// ring, with the stretch of the whole level lowered before the next.
-/// Errors: FlippedTriangle if no embedding was found.
-/// Source: Sander et al. 2002 (hierarchical stretch); Floater 2003; thesis §3.1.1.
+/// Maps the disk onto the unit square. The interior is coarsened, the coarse mesh gets mean-value coordinates
+/// with the border where the layout put it, and vertices come back a level at a time, each placed inside its
+/// ring, with the stretch of the whole level lowered before the next. From a few hundred vertices on the seam
+/// slides too: with its mates glued the square is a flat surface with cone points, the surface moves freely
+/// across the glued sides, and only the vertices at cone points stay. So the result maps the disk to the
+/// plane, and where the seam has moved off the square's border, onto the square only after moving pieces to
+/// the mates. Boundary vertices of the surface slide along their side of the square. Errors: FlippedTriangle
+/// if no embedding was found. Source: Sander et al. 2002 (hierarchical stretch); Floater 2003; thesis §3.1.1;
+/// the seam that slides after Aigerman & Lipman 2015 (orbifold embeddings).
 Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progress& progress = {});
 
 } // namespace gimg

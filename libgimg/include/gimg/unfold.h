@@ -10,8 +10,9 @@ namespace gimg {
 /// A surface cut open and flattened.
 struct Unfolded
 {
-    CutGraph cut;    ///< on the surface as given
-    int extrema = 0; ///< how many findExtrema vertices the cut reaches
+    CutGraph cut;                            ///< on the surface as given
+    SquareLayout layout = SquareLayout::Cut; ///< Cut or Octahedral
+    int extrema = 0; ///< how many findExtrema vertices, or tips of the star, the cut reaches
     SquareDisk square;
     Parameterization map;
 };
@@ -22,12 +23,15 @@ using UnfoldProgress = std::function<void(const char* stage, double fraction)>;
 /// How good an unfolding is; more is better.
 using UnfoldJudge = std::function<double(const Unfolded&)>;
 
-/// Cut, layout and flattening. The cut is extended to the extrema if that is sure to help; where findExtrema
-/// expects less than half the energy to go, the surface is flattened both ways and the one that `judge` finds
-/// better is taken. An extended cut that does not fit the border is not taken.
+/// Cut, layout and flattening. Closed surfaces of genus 0 get the octahedral layout, unless a simplified mesh
+/// shows that samples spread far more evenly along an extended cut. The others are cut to a disk, and the cut
+/// is extended to the extrema if that is sure to help; where findExtrema expects less than half the energy to
+/// go, the surface is flattened both ways and the one that `judge` finds better is taken. An extended cut
+/// that does not fit the border is not taken.
 /// @param mesh   connected, manifold, oriented
 /// @param judge  if there is none, less of quarticStretchEnergy is better
-/// Errors: those of layOutBorder and flattenToSquare for the initial cut.
+/// Errors: those of layOutBorder and flattenToSquare; BadArgument where the octahedral layout is asked for
+/// and the surface is not closed or has handles, TargetUnreachable where no star was found.
 Result<Unfolded> unfold(const Mesh& mesh, const BorderOptions& options, const UnfoldJudge& judge = {},
                         const UnfoldProgress& progress = {});
 
