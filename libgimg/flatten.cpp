@@ -1,6 +1,7 @@
 #include "gimg/flatten.h"
 
 #include "border_ties.h"
+#include "curvature_importance.h"
 #include "gimg/mean_value.h"
 #include "gimg/stretch.h"
 #include "hierarchy.h"
@@ -41,10 +42,12 @@ std::vector<Vec2> kernel(const std::vector<std::pair<Vec2, Vec2>>& edges, std::v
 class Star
 {
 public:
-    Star(const Mesh& disk, const std::vector<Triangle>& triangles, const std::vector<Vec2>& st)
+    Star(const Mesh& disk, const std::vector<double>& importance, const std::vector<Triangle>& triangles,
+         const std::vector<Vec2>& st)
     {
         for (const Triangle& t : triangles) {
-            elements_.emplace_back(disk.positions[t[0]], disk.positions[t[1]], disk.positions[t[2]]);
+            elements_.emplace_back(disk.positions[t[0]], disk.positions[t[1]], disk.positions[t[2]],
+                                   meanImportance(importance, t));
             edges_.push_back({st[t[1]], st[t[2]]});
         }
     }
@@ -112,34 +115,33 @@ private:
 // The hierarchy's current mesh by itself, with the positions of its vertices.
 struct Level
 {
-    Level(const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides, const std::vector<Vec2>& st)
+    Level(const Hierarchy& hierarchy, const std::vector<double>& weight,
+          const std::vector<uint8_t>& squareSides, const std::vector<Vec2>& st)
         : mesh(hierarchy.current(vertexOf))
     {
         for (int v : vertexOf) {
             fixed.push_back(squareSides[v] != 0);
             position.push_back(st[v]);
+            if (!weight.empty()) importance.push_back(weight[v]);
         }
     }
-    // Newton descent with the border where it is, or sliding where `ties` let it.
-    void descend(const BorderTies* ties, const DescentOptions& options)
+    // Newton descent with the border where it is, or released: sliding where `ties` let it.
+    void descend(const BorderTies& ties, bool released, const DescentOptions& options)
     {
-        if (!ties) {
-            minimizeStretch(mesh, fixed, position, options);
-            return;
-        }
         std::vector<Freedom> freedom(vertexOf.size());
-        std::vector<std::array<int, 2>> row(ties->leader.size(), {-1, -1});
+        std::vector<std::array<int, 2>> row(ties.leader.size(), {-1, -1});
         int unknowns = 0;
         for (const Triangle& f : mesh.faces)
             for (int k : f) {
-                const int v = vertexOf[k], leader = ties->leader[v], turns = ties->motion[v].turns;
+                if (fixed[k] && !released) continue;
+                const int v = vertexOf[k], leader = ties.leader[v], turns = ties.motion[v].turns;
                 for (int c = 0; c < 2; ++c)
-                    if (ties->free[leader][c] && row[leader][c] < 0) row[leader][c] = unknowns++;
+                    if (ties.free[leader][c] && row[leader][c] < 0) row[leader][c] = unknowns++;
                 // s of a copy that is turned by a quarter is -t of its leader, and so on.
                 freedom[k].row = turns % 2 == 0 ? row[leader] : std::array{row[leader][1], row[leader][0]};
                 freedom[k].sign = {turns == 1 || turns == 2 ? -1.0 : 1.0, turns >= 2 ? -1.0 : 1.0};
             }
-        minimizeStretch(mesh, freedom, unknowns, position, options);
+        minimizeStretch(mesh, importance, freedom, unknowns, position, options);
     }
     void storePositions(std::vector<Vec2>& st) const
     {
@@ -148,21 +150,22 @@ struct Level
 
     std::vector<int> vertexOf; // the disk's index of each vertex; declared before mesh, which fills it
     Mesh mesh;
+    std::vector<double> importance;
     std::vector<bool> fixed;
     std::vector<Vec2> position;
 };
 
 // Moves vertices of the current mesh one by one: all of them twice, then those at slivers until none is left.
 // Newton's global step is no longer than the worst sliver allows; this frees the slivers first.
-void sweepVertices(const Mesh& disk, const Hierarchy& hierarchy, const std::vector<uint8_t>& squareSides,
-                   std::vector<Vec2>& st)
+void sweepVertices(const Mesh& disk, const std::vector<double>& importance, const Hierarchy& hierarchy,
+                   const std::vector<uint8_t>& squareSides, std::vector<Vec2>& st)
 {
     constexpr int kSweeps = 2, kSliverSweeps = 100;
     constexpr double kSliver = 1000; // times the mean energy for its area
     std::vector<int> vertexOf;
     const Mesh level = hierarchy.current(vertexOf);
     const auto descend = [&](int v) {
-        if (squareSides[v] == 0) Star(disk, hierarchy.star(v), st).descend(st[v]);
+        if (squareSides[v] == 0) Star(disk, importance, hierarchy.star(v), st).descend(st[v]);
     };
     for (int sweep = 0; sweep < kSweeps; ++sweep)
         for (int v : vertexOf) descend(v);
@@ -215,6 +218,9 @@ Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progres
     const BorderTies ties = borderTies(square);
     bool released = false;
     const Mesh& disk = square.disk.mesh;
+    const std::vector<double> onSurface = curvatureImportance(square.surface, square.grid);
+    std::vector<double> importance;
+    for (int v : square.disk.origin) importance.push_back(onSurface[v]);
     Parameterization result;
     result.st = square.borderPosition;
     Hierarchy hierarchy(disk, square.squareSides);
@@ -222,30 +228,28 @@ Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progres
     hierarchy.coarsen();
     if (progress) progress(0.1);
 
-    Level coarsest(hierarchy, square.squareSides, result.st);
+    Level coarsest(hierarchy, importance, square.squareSides, result.st);
     if (const Status started = startCoarsest(coarsest); !started) return started.error();
-    coarsest.descend(nullptr, kFirstDescent);
+    coarsest.descend(ties, false, kFirstDescent);
     coarsest.storePositions(result.st);
 
     while (!hierarchy.isFull()) {
         const int target = hierarchy.interiorCount() * kGrowth;
         while (!hierarchy.isFull() && hierarchy.interiorCount() < target) {
             const int v = hierarchy.refine();
-            const Star star(disk, hierarchy.star(v), result.st);
+            const Star star(disk, importance, hierarchy.star(v), result.st);
             if (!star.place(result.st[v]))
                 return Error{ErrorKind::FlippedTriangle, "no room left in the plane for surface vertex " +
                                                              std::to_string(square.disk.origin[v])};
             star.descend(result.st[v]);
         }
-        sweepVertices(disk, hierarchy, square.squareSides, result.st);
-        Level level(hierarchy, square.squareSides, result.st);
+        sweepVertices(disk, importance, hierarchy, square.squareSides, result.st);
+        Level level(hierarchy, importance, square.squareSides, result.st);
         const bool release = hierarchy.isFull() || hierarchy.interiorCount() >= kReleased;
-        if (!release)
-            level.descend(nullptr, kDescent);
-        else if (!released)
-            level.descend(&ties, kReleaseDescent);
-        else
-            level.descend(&ties, hierarchy.isFull() ? kLastDescent : kDescent);
+        level.descend(ties, release,
+                      release && !released ? kReleaseDescent
+                      : hierarchy.isFull() ? kLastDescent
+                                           : kDescent);
         released = release;
         level.storePositions(result.st);
         if (progress) progress(0.1 + 0.9 * hierarchy.interiorCount() / std::max(1, interior));

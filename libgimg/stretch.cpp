@@ -48,12 +48,14 @@ template <class Term> double orderedSum(int count, std::vector<double>& scratch,
 class StretchDescent
 {
 public:
-    StretchDescent(const Mesh& mesh, const std::vector<Freedom>& freedom, int unknowns, std::vector<Vec2>& st)
+    StretchDescent(const Mesh& mesh, const std::vector<double>& importance,
+                   const std::vector<Freedom>& freedom, int unknowns, std::vector<Vec2>& st)
         : mesh_(mesh), freedom_(freedom), unknowns_(unknowns), st_(st)
     {
         elements_.reserve(mesh.faces.size());
         for (const Triangle& f : mesh.faces)
-            elements_.emplace_back(mesh.positions[f[0]], mesh.positions[f[1]], mesh.positions[f[2]]);
+            elements_.emplace_back(mesh.positions[f[0]], mesh.positions[f[1]], mesh.positions[f[2]],
+                                   meanImportance(importance, f));
         if (unknowns_ > 0) buildPattern();
     }
 
@@ -246,11 +248,12 @@ int flippedTriangles(const std::vector<Triangle>& faces, const std::vector<Vec2>
     return flipped;
 }
 
-double minimizeStretch(const Mesh& mesh, const std::vector<Freedom>& freedom, int unknowns,
-                       std::vector<Vec2>& st, const DescentOptions& options)
+double minimizeStretch(const Mesh& mesh, const std::vector<double>& importance,
+                       const std::vector<Freedom>& freedom, int unknowns, std::vector<Vec2>& st,
+                       const DescentOptions& options)
 {
     const OneBlasThread oneThread;
-    return StretchDescent(mesh, freedom, unknowns, st).run(options);
+    return StretchDescent(mesh, importance, freedom, unknowns, st).run(options);
 }
 
 double minimizeStretch(const Mesh& mesh, const std::vector<bool>& fixed, std::vector<Vec2>& st,
@@ -264,7 +267,7 @@ double minimizeStretch(const Mesh& mesh, const std::vector<bool>& fixed, std::ve
                 freedom[v].row = {unknowns, unknowns + 1};
                 unknowns += 2;
             }
-    return minimizeStretch(mesh, freedom, unknowns, st, options);
+    return minimizeStretch(mesh, {}, freedom, unknowns, st, options);
 }
 
 } // namespace gimg

@@ -43,8 +43,8 @@ inline double firstCollapse(const std::array<Vec2, 3>& p, const std::array<Vec2,
 class StretchElement
 {
 public:
-    StretchElement(const Vec3& q0, const Vec3& q1, const Vec3& q2)
-        : area_(0.5 * (q1 - q0).cross(q2 - q0).norm())
+    StretchElement(const Vec3& q0, const Vec3& q1, const Vec3& q2, double importance = 1)
+        : area_(0.5 * (q1 - q0).cross(q2 - q0).norm()), weight_(importance * area_)
     {
         const Vec3 edge[3] = {q2 - q1, q0 - q2, q1 - q0};
         for (int i = 0; i < 3; ++i)
@@ -65,7 +65,7 @@ public:
     double energy(const std::array<Vec2, 3>& p) const
     {
         const double stretch = squaredStretch(p);
-        return area_ * stretch * stretch;
+        return weight_ * stretch * stretch;
     }
 
     struct Derivatives
@@ -102,7 +102,7 @@ public:
 
         // E = A/4 f^2
         const double f = n / a2;
-        return {0.5 * area_ * f * gradF, 0.5 * area_ * (gradF * gradF.transpose() + f * hessF)};
+        return {0.5 * weight_ * f * gradF, 0.5 * weight_ * (gradF * gradF.transpose() + f * hessF)};
     }
 
 private:
@@ -121,6 +121,7 @@ private:
 
     Eigen::Matrix3d gram_;
     double area_;
+    double weight_;
 };
 
 } // namespace gimg

@@ -1,8 +1,9 @@
 #include "gimg/flatten.h"
 
+#include "border_ties.h"
+#include "curvature_importance.h"
 #include "gimg/mean_value.h"
 #include "gimg/stretch.h"
-#include "border_ties.h"
 #include "hierarchy.h"
 #include "shapes.h"
 #include "stretch_element.h"
@@ -139,6 +140,29 @@ TEST(Hierarchy, CoarsensToAWheelAndComesBackUnchanged)
     while (!hierarchy.isFull()) hierarchy.refine();
     EXPECT_EQ(hierarchy.interiorCount(), interior);
     EXPECT_EQ(hierarchy.current(vertexOf).faces, square->disk.mesh.faces);
+}
+
+TEST(CurvatureImportance, OfASphereIsOneAndOfTipsIsMore)
+{
+    Mesh mesh = shapes::sphere(1, 24);
+    for (double x : curvatureImportance(mesh, 257)) EXPECT_NEAR(x, 1, 0.05);
+    for (Vec3& p : mesh.positions) p.z() *= 3;
+    const std::vector<double> importance = curvatureImportance(mesh, 257);
+    double weighted = 0;
+    for (const Triangle& f : mesh.faces) {
+        const Vec3& p = mesh.positions[f[0]];
+        const double area = 0.5 * (mesh.positions[f[1]] - p).cross(mesh.positions[f[2]] - p).norm();
+        for (int v : f) weighted += importance[v] * area / 3;
+    }
+    EXPECT_NEAR(weighted / surfaceArea(mesh), 1, 1e-12);
+    // Principal curvatures of the spheroid: 3 and 3 at a tip, 1 and 1/9 on the equator.
+    double tip = 0, equator = 0;
+    for (size_t v = 0; v < importance.size(); ++v) {
+        if (mesh.positions[v].z() > 2.99) tip = importance[v];
+        if (std::abs(mesh.positions[v].z()) < 0.01) equator = importance[v];
+    }
+    EXPECT_GT(tip, 2 * equator);
+    for (double x : curvatureImportance(shapes::disk(1, 8), 257)) EXPECT_EQ(x, 1);
 }
 
 class FlattenShape : public testing::TestWithParam<std::pair<int, int>>
