@@ -263,11 +263,14 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     out.topology = topology(mesh);
 
     stage("cut", 0);
-    SurfaceMeasure measure(mesh);
+    std::optional<SurfaceMeasure> measure; // built when needed: it takes as much memory as the mesh
+    const auto measured = [&]() -> const SurfaceMeasure& {
+        return measure ? *measure : measure.emplace(mesh);
+    };
     double cutSeconds = 0;
     Result<Unfolded> unfolded = unfold(
         mesh, {options.grid, options.lowest, options.layout},
-        [&](const Unfolded& candidate) { return codedPsnr(candidate, measure); },
+        [&](const Unfolded& candidate) { return codedPsnr(candidate, measured()); },
         [&](const char* name, double fraction) {
             if (cutSeconds == 0 && std::string_view(name) != "cut") cutSeconds = watch.lap();
             stage(name, fraction);
@@ -300,8 +303,9 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     Result<codec::Encoder> encoder = encoderOf(square, *geometry, *normals);
     if (!encoder) return encoder.error();
     out.seconds.code = watch.lap();
+    measured();
     return MeshEncoder(std::make_unique<const Prepared>(Prepared{
-        std::move(out), std::move(*encoder), std::move(measure), options.progress, options.threads}));
+        std::move(out), std::move(*encoder), std::move(*measure), options.progress, options.threads}));
 }
 
 Result<EncodedMesh> MeshEncoder::encode(const EncodeGoal& goal) const

@@ -12,6 +12,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
 namespace gimg {
 namespace {
@@ -223,36 +224,36 @@ Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progres
     for (int v : square.disk.origin) importance.push_back(onSurface[v]);
     Parameterization result;
     result.st = square.borderPosition;
-    Hierarchy hierarchy(disk, square.squareSides);
-    const int interior = hierarchy.interiorCount();
-    hierarchy.coarsen();
+    std::optional<Hierarchy> hierarchy(std::in_place, disk, square.squareSides);
+    const int interior = hierarchy->interiorCount();
+    hierarchy->coarsen();
     if (progress) progress(0.1);
 
-    Level coarsest(hierarchy, importance, square.squareSides, result.st);
+    Level coarsest(*hierarchy, importance, square.squareSides, result.st);
     if (const Status started = startCoarsest(coarsest); !started) return started.error();
     coarsest.descend(ties, false, kFirstDescent);
     coarsest.storePositions(result.st);
 
-    while (!hierarchy.isFull()) {
-        const int target = hierarchy.interiorCount() * kGrowth;
-        while (!hierarchy.isFull() && hierarchy.interiorCount() < target) {
-            const int v = hierarchy.refine();
-            const Star star(disk, importance, hierarchy.star(v), result.st);
+    for (bool full = hierarchy->isFull(); !full;) {
+        const int target = hierarchy->interiorCount() * kGrowth;
+        while (!hierarchy->isFull() && hierarchy->interiorCount() < target) {
+            const int v = hierarchy->refine();
+            const Star star(disk, importance, hierarchy->star(v), result.st);
             if (!star.place(result.st[v]))
                 return Error{ErrorKind::FlippedTriangle, "no room left in the plane for surface vertex " +
                                                              std::to_string(square.disk.origin[v])};
             star.descend(result.st[v]);
         }
-        sweepVertices(disk, importance, hierarchy, square.squareSides, result.st);
-        Level level(hierarchy, importance, square.squareSides, result.st);
-        const bool release = hierarchy.isFull() || hierarchy.interiorCount() >= kReleased;
-        level.descend(ties, release,
-                      release && !released ? kReleaseDescent
-                      : hierarchy.isFull() ? kLastDescent
-                                           : kDescent);
+        sweepVertices(disk, importance, *hierarchy, square.squareSides, result.st);
+        Level level(*hierarchy, importance, square.squareSides, result.st);
+        const int reached = hierarchy->interiorCount();
+        full = hierarchy->isFull();
+        if (full) hierarchy.reset(); // the last descent needs the memory
+        const bool release = full || reached >= kReleased;
+        level.descend(ties, release, release && !released ? kReleaseDescent : full ? kLastDescent : kDescent);
         released = release;
         level.storePositions(result.st);
-        if (progress) progress(0.1 + 0.9 * hierarchy.interiorCount() / std::max(1, interior));
+        if (progress) progress(0.1 + 0.9 * reached / std::max(1, interior));
     }
     if (const int flipped = flippedTriangles(disk.faces, result.st); flipped > 0)
         return Error{ErrorKind::FlippedTriangle, std::to_string(flipped) + " flipped triangles"};

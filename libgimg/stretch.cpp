@@ -10,6 +10,7 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
+#include <numeric>
 
 extern "C" {
 int openblas_get_num_threads(void);
@@ -96,45 +97,74 @@ private:
     int row(int f, int k) const { return freedom_[mesh_.faces[f][k % 3]].row[k / 3]; }
     double sign(int f, int k) const { return freedom_[mesh_.faces[f][k % 3]].sign[k / 3]; }
 
+    // Unknowns of a face meet where corners coincide or an edge joins them: once a vertex, once an edge.
     void buildPattern()
     {
-        std::vector<Eigen::Triplet<double>> entries;
-        for (int f = 0; f < mesh_.faceCount(); ++f)
-            for (int i = 0; i < 6; ++i)
-                for (int j = 0; j < 6; ++j)
-                    if (row(f, i) >= row(f, j) && row(f, j) >= 0)
-                        entries.emplace_back(row(f, i), row(f, j), 0.0);
+        std::vector<uint64_t> entries; // column, row of the lower triangle
+        const auto meet = [&](int v, int w) {
+            for (int a : freedom_[v].row)
+                for (int b : freedom_[w].row)
+                    if (a >= 0 && b >= 0)
+                        entries.push_back(static_cast<uint64_t>(std::min(a, b)) << 32 | std::max(a, b));
+        };
+        entries.reserve(6 * mesh_.positions.size() + 6 * mesh_.faces.size());
+        for (int v = 0; v < mesh_.vertexCount(); ++v) meet(v, v);
+        const Halfedges he(mesh_.faces, mesh_.vertexCount());
+        for (int h = 0; h < he.count(); ++h)
+            if (he.onBoundary(h) || h < he.twin(h)) meet(he.tail(h), he.head(h));
+        std::sort(entries.begin(), entries.end());
+        entries.erase(std::unique(entries.begin(), entries.end()), entries.end());
+
         hessian_.resize(unknowns_, unknowns_);
-        hessian_.setFromTriplets(entries.begin(), entries.end());
-        hessian_.makeCompressed();
-        slot_.assign(elements_.size() * 36, -1);
+        hessian_.resizeNonZeros(static_cast<Eigen::Index>(entries.size()));
+        std::fill(hessian_.outerIndexPtr(), hessian_.outerIndexPtr() + unknowns_ + 1, 0);
+        for (size_t k = 0; k < entries.size(); ++k) {
+            hessian_.innerIndexPtr()[k] = static_cast<int>(entries[k] & 0xffffffff);
+            ++hessian_.outerIndexPtr()[(entries[k] >> 32) + 1];
+        }
+        std::partial_sum(hessian_.outerIndexPtr(), hessian_.outerIndexPtr() + unknowns_ + 1,
+                         hessian_.outerIndexPtr());
+
+        slots_.resize(elements_.size());
         tbb::parallel_for(0, mesh_.faceCount(), [&](int f) {
+            auto slot = slots_[f].begin();
             for (int i = 0; i < 6; ++i)
-                for (int j = 0; j < 6; ++j) {
-                    if (!(row(f, i) >= row(f, j) && row(f, j) >= 0)) continue;
-                    const int* begin = hessian_.innerIndexPtr() + hessian_.outerIndexPtr()[row(f, j)];
-                    const int* end = hessian_.innerIndexPtr() + hessian_.outerIndexPtr()[row(f, j) + 1];
-                    slot_[static_cast<size_t>(f) * 36 + 6 * i + j] =
-                        static_cast<int>(std::lower_bound(begin, end, row(f, i)) - hessian_.innerIndexPtr());
-                }
+                for (int j = 0; j <= i; ++j) *slot++ = slotOf(row(f, i), row(f, j));
         });
-        derivatives_.resize(elements_.size());
     }
 
+    // Where the entry of two rows lies among the matrix values; -1 if one of them is fixed.
+    int slotOf(int a, int b) const
+    {
+        if (a < 0 || b < 0) return -1;
+        const int* begin = hessian_.innerIndexPtr() + hessian_.outerIndexPtr()[std::min(a, b)];
+        const int* end = hessian_.innerIndexPtr() + hessian_.outerIndexPtr()[std::min(a, b) + 1];
+        return static_cast<int>(std::lower_bound(begin, end, std::max(a, b)) - hessian_.innerIndexPtr());
+    }
+
+    // Derivatives in parallel, sums in the order of the faces; block by block, for memory.
     void assemble()
     {
-        tbb::parallel_for(0, mesh_.faceCount(),
-                          [&](int f) { derivatives_[f] = elements_[f].derivatives(corners(f, st_)); });
+        constexpr int kBlock = 1 << 14;
         gradient_.setZero(unknowns_);
         double* values = hessian_.valuePtr();
         std::fill(values, values + hessian_.nonZeros(), 0.0);
-        for (int f = 0; f < mesh_.faceCount(); ++f) {
-            const StretchElement::Derivatives& d = derivatives_[f];
-            for (int i = 0; i < 6; ++i) {
-                if (row(f, i) >= 0) gradient_[row(f, i)] += sign(f, i) * d.gradient[i];
-                for (int j = 0; j < 6; ++j) {
-                    const int slot = slot_[static_cast<size_t>(f) * 36 + 6 * i + j];
-                    if (slot >= 0) values[slot] += sign(f, i) * sign(f, j) * d.hessian(i, j);
+        derivatives_.resize(std::min<size_t>(kBlock, elements_.size()));
+        for (int first = 0; first < mesh_.faceCount(); first += kBlock) {
+            const int last = std::min(mesh_.faceCount(), first + kBlock);
+            tbb::parallel_for(first, last, [&](int f) {
+                derivatives_[f - first] = elements_[f].derivatives(corners(f, st_));
+            });
+            for (int f = first; f < last; ++f) {
+                const StretchElement::Derivatives& d = derivatives_[f - first];
+                auto slot = slots_[f].begin();
+                for (int i = 0; i < 6; ++i) {
+                    if (row(f, i) >= 0) gradient_[row(f, i)] += sign(f, i) * d.gradient[i];
+                    for (int j = 0; j <= i; ++j, ++slot) {
+                        if (*slot < 0) continue;
+                        const double entry = sign(f, i) * sign(f, j) * d.hessian(i, j);
+                        values[*slot] += j < i && row(f, i) == row(f, j) ? 2 * entry : entry;
+                    }
                 }
             }
         }
@@ -207,8 +237,8 @@ private:
     std::vector<Vec2>& st_;
     std::vector<StretchElement> elements_;
     std::vector<StretchElement::Derivatives> derivatives_;
-    std::vector<int> slot_; // where entry (i,j) of a face's 6 x 6 block lies among the matrix values
-    SparseMatrix hessian_;  // lower triangle
+    std::vector<std::array<int, 21>> slots_; // where each pair (i, j <= i) of a face's 6 unknowns lies
+    SparseMatrix hessian_;                   // lower triangle
     Eigen::VectorXd gradient_;
     std::vector<double> scratch_;
     Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> solver_;
