@@ -12,12 +12,12 @@ namespace {
 constexpr double kSure = 0.5; // of the energy: below, the extended cut is taken without trying the other
 
 Result<Unfolded> unfoldAlong(const Mesh& mesh, std::span<const int> extrema, const BorderOptions& options,
-                             const UnfoldProgress& progress)
+                             MapKind kind, const UnfoldProgress& progress)
 {
     CutGraph cut = cutToDisk(mesh, extrema);
     Result<SquareDisk> square = layOutBorder(mesh, cut, options);
     if (!square) return square.error();
-    Result<Parameterization> map = flattenToSquare(*square, [&](double fraction) {
+    Result<Parameterization> map = mapToSquare(*square, kind, [&](double fraction) {
         if (progress) progress("parameterize", fraction);
     });
     if (!map) return map.error();
@@ -27,15 +27,15 @@ Result<Unfolded> unfoldAlong(const Mesh& mesh, std::span<const int> extrema, con
 } // namespace
 
 Result<Unfolded> unfold(const Mesh& mesh, const BorderOptions& options, const UnfoldJudge& judge,
-                        const UnfoldProgress& progress)
+                        const UnfoldProgress& progress, MapKind kind)
 {
     const Extrema extrema = findExtrema(mesh, {}, [&](double fraction) {
         if (progress) progress("cut", fraction);
     });
-    if (extrema.vertices.empty()) return unfoldAlong(mesh, {}, options, progress);
-    Result<Unfolded> extended = unfoldAlong(mesh, extrema.vertices, options, progress);
+    if (extrema.vertices.empty()) return unfoldAlong(mesh, {}, options, kind, progress);
+    Result<Unfolded> extended = unfoldAlong(mesh, extrema.vertices, options, kind, progress);
     if (extended && extrema.energyWith < kSure * extrema.energyWithout) return extended;
-    Result<Unfolded> plain = unfoldAlong(mesh, {}, options, progress);
+    Result<Unfolded> plain = unfoldAlong(mesh, {}, options, kind, progress);
     if (!extended) return plain;
     if (!plain) return extended;
     const auto quality = [&](const Unfolded& unfolded) {

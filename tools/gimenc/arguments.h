@@ -20,6 +20,7 @@ struct Arguments
     std::optional<double> psnr;
     std::string raw, component, json;
     std::string weld = "auto";
+    std::string param = "stretch";
     bool resume = false;
     bool quiet = false;
 };

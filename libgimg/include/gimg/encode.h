@@ -1,5 +1,6 @@
 #pragma once
 
+#include "gimg/linear_maps.h"
 #include "gimg/mesh.h"
 #include "gimg/result.h"
 
@@ -38,6 +39,7 @@ struct EncodeOptions : EncodeGoal
     int normals = 0; ///< samples a side of the normal image, 2^j + 1; 0: none
     int threads = 0; ///< 0: one a core. The file does not depend on it.
     EncodeProgress progress;
+    MapKind param = MapKind::Stretch; ///< how the surface is mapped to the square
 };
 
 struct EncodeSeconds
@@ -54,6 +56,7 @@ struct EncodedMesh
     int normals = 0;
     double psnr =
         0; ///< of the decoded finest level against the input; infinite if they agree, 0 if nothing is left
+    MapKind param = MapKind::Stretch;
     double stretchEfficiency = 0; ///< see stretchEfficiency()
     int cutNodes = 0;
     int cutPaths = 0;

@@ -1,7 +1,7 @@
 #pragma once
 
 #include "gimg/border.h"
-#include "gimg/flatten.h"
+#include "gimg/linear_maps.h"
 #include "gimg/mesh.h"
 #include "gimg/result.h"
 
@@ -24,11 +24,12 @@ using UnfoldJudge = std::function<double(const Unfolded&)>;
 
 /// Cut, layout and flattening. The cut is extended to the extrema if that is sure to help; where findExtrema
 /// expects less than half the energy to go, the surface is flattened both ways and the one that `judge` finds
-/// better is taken. An extended cut that does not fit the border is not taken.
+/// better is taken. An extended cut that does not fit the border, or whose map fails, is not taken.
 /// @param mesh   connected, manifold, oriented
 /// @param judge  if there is none, less of quarticStretchEnergy is better
-/// Errors: those of layOutBorder and flattenToSquare for the initial cut.
+/// @param kind   of the map; extrema are judged by the stretch-minimising one whatever it is
+/// Errors: those of layOutBorder and mapToSquare for the initial cut.
 Result<Unfolded> unfold(const Mesh& mesh, const BorderOptions& options, const UnfoldJudge& judge = {},
-                        const UnfoldProgress& progress = {});
+                        const UnfoldProgress& progress = {}, MapKind kind = MapKind::Stretch);
 
 } // namespace gimg
