@@ -11,14 +11,17 @@
 #include <CLI/CLI.hpp>
 
 #include <algorithm>
-#include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <ctime>
 #include <functional>
+#include <limits>
 
 namespace {
 
 using namespace gimg;
+
+constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
 double signedArea(const Mesh& mesh, const std::vector<Vec2>& st)
 {
@@ -60,7 +63,7 @@ Judged judge(const Mesh& mesh, std::vector<Vec2> st)
 struct Timed
 {
     std::vector<Vec2> st;
-    double seconds = 0; // median
+    double seconds = 0; ///< of processor time on all threads, median
 };
 
 Timed timed(int repeat, const std::function<std::vector<Vec2>()>& run)
@@ -68,9 +71,9 @@ Timed timed(int repeat, const std::function<std::vector<Vec2>()>& run)
     Timed result;
     std::vector<double> seconds;
     for (int i = 0; i < repeat; ++i) {
-        const auto start = std::chrono::steady_clock::now();
+        const std::clock_t start = std::clock();
         result.st = run();
-        seconds.push_back(std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count());
+        seconds.push_back(static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC);
     }
     std::nth_element(seconds.begin(), seconds.begin() + repeat / 2, seconds.end());
     result.seconds = seconds[static_cast<size_t>(repeat / 2)];
@@ -87,7 +90,7 @@ public:
     {
         if (timed.st.empty()) {
             std::printf("%-12s %-18s %-11s %s\n", name_.c_str(), map.c_str(), border.c_str(), error.c_str());
-            return {0, std::numeric_limits<double>::infinity()};
+            return {0, kInfinity};
         }
         const Judged judged = judge(mesh_, timed.st);
         std::printf("%-12s %-18s %-11s %10.4g %7d %8.2f\n", name_.c_str(), map.c_str(), border.c_str(),
@@ -110,6 +113,18 @@ Result<SquareDisk> openMesh(const std::string& path)
     return layOutBorder(read->mesh, cutToDisk(read->mesh, extrema.vertices), {});
 }
 
+std::vector<Vec2> ourMap(const SquareDisk& square, MapKind kind, std::string& error)
+{
+    if (kind == MapKind::Stretch) {
+        Result<Parameterization> map = mapToSquare(square, kind);
+        if (map) return std::move(map->st);
+        return error = map.error().message, std::vector<Vec2>{};
+    }
+    Result<std::vector<Vec2>> st = linearMap(square, kind);
+    if (st) return std::move(*st);
+    return error = st.error().message, std::vector<Vec2>{};
+}
+
 bool compare(const std::string& path, int repeat)
 {
     const Result<SquareDisk> square = openMesh(path);
@@ -118,34 +133,27 @@ bool compare(const std::string& path, int repeat)
     name.resize(std::min(name.size(), name.rfind('.')));
     Table table(name, square->disk.mesh);
 
-    double ours = 0, floater = 0, bestCgal = std::numeric_limits<double>::infinity(), seconds = 0, arap = 0;
+    double ours = 0, floater = 0, bestCgal = kInfinity, seconds = 0;
     for (MapKind kind : kMapKinds) {
         std::string error;
-        const Timed run = timed(repeat, [&]() -> std::vector<Vec2> {
-            if (kind != MapKind::Stretch) {
-                Result<std::vector<Vec2>> st = linearMap(*square, kind);
-                return st ? std::move(*st) : (error = st.error().message, std::vector<Vec2>{});
-            }
-            Result<Parameterization> map = mapToSquare(*square, kind);
-            return map ? std::move(map->st) : (error = map.error().message, std::vector<Vec2>{});
-        });
+        const Timed run = timed(repeat, [&] { return ourMap(*square, kind, error); });
         const Judged judged = table.row(std::string("gimg ") + mapName(kind), "gimg's", run, error);
         if (kind == MapKind::Stretch) ours = judged.stretch, seconds = run.seconds;
         if (kind == MapKind::MeanValue) floater = judged.stretch;
     }
     const bench::CgalDisk cgal(*square);
+    std::string beside = "ARAP fails";
     for (const bench::CgalMap& map : bench::cgalMaps()) {
         std::string error;
         const Timed run = timed(repeat, [&] { return cgal.run(map, error); });
         const Judged judged = table.row("CGAL " + map.map, map.border, run, error);
-        if (map.border.empty())
-            arap = run.seconds;
-        else
+        if (!map.border.empty())
             bestCgal = std::min(bestCgal, judged.stretch);
+        else if (!run.st.empty())
+            beside = std::to_string(seconds / run.seconds) + " of ARAP's time";
     }
-    std::printf("%-12s %d triangles; stretch is %.3f of CGAL's best square, %.3f of gimg mvc; "
-                "%.2f of ARAP's time\n\n",
-                name.c_str(), square->disk.mesh.faceCount(), ours / bestCgal, ours / floater, seconds / arap);
+    std::printf("%-12s %d triangles; stretch is %.3g of CGAL's best square, %.3g of gimg mvc; %s\n\n",
+                name.c_str(), square->disk.mesh.faceCount(), ours / bestCgal, ours / floater, beside.c_str());
     return true;
 }
 
@@ -161,7 +169,7 @@ int main(int argc, char** argv)
     app.add_option("MESH", meshes, "meshes to compare on")->required();
     if (const auto done = cli::parse(app, argc, argv)) return *done;
     std::printf("%-12s %-18s %-11s %10s %7s %8s\n", "mesh", "map", "border", "L2 stretch", "flipped",
-                "seconds");
+                "CPU s");
     bool good = true;
     for (const std::string& mesh : meshes) good = compare(mesh, repeat) && good;
     return good ? cli::Done : cli::Refused;
