@@ -6,6 +6,8 @@
 #include "gimg/decode.h"
 #include "gimg/distance.h"
 #include "gimg/flatten.h"
+#include "gimg/intrinsic.h"
+#include "gimg/linear_maps.h"
 #include "gimg/sample.h"
 
 namespace {
@@ -30,6 +32,30 @@ void layOut(benchmark::State& state)
     for (auto _ : state) benchmark::DoNotOptimize(layOutBorder(*mesh, graph, {257, 0}));
 }
 BENCHMARK(layOut)->Unit(benchmark::kMillisecond);
+
+// The intrinsic Delaunay triangulation of the surface.
+void delaunay(benchmark::State& state)
+{
+    const Mesh* mesh = bunny();
+    if (!have(state, mesh)) return;
+    for (auto _ : state) {
+        Result<IntrinsicTriangulation> triangulation = IntrinsicTriangulation::of(*mesh);
+        benchmark::DoNotOptimize(triangulation->makeDelaunay());
+    }
+}
+BENCHMARK(delaunay)->Unit(benchmark::kMillisecond);
+
+// Linear maps; the argument is a MapKind.
+void linear(benchmark::State& state)
+{
+    const Mesh* mesh = bunny();
+    if (!have(state, mesh)) return;
+    const Result<SquareDisk> square = layOutBorder(*mesh, cutToDisk(*mesh), {257, 0});
+    const MapKind kind = static_cast<MapKind>(state.range(0));
+    state.SetLabel(mapName(kind));
+    for (auto _ : state) benchmark::DoNotOptimize(linearMap(*square, kind));
+}
+BENCHMARK(linear)->DenseRange(1, 3)->Unit(benchmark::kMillisecond);
 
 // The parameterization.
 void flatten(benchmark::State& state)

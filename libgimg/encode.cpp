@@ -274,7 +274,8 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
         [&](const char* name, double fraction) {
             if (cutSeconds == 0 && std::string_view(name) != "cut") cutSeconds = watch.lap();
             stage(name, fraction);
-        });
+        },
+        options.param);
     if (!unfolded) return unfolded.error();
     const auto& [cut, layout, extrema, square, map] = *unfolded;
     out.cutNodes = cut.nodeCount();
@@ -286,6 +287,7 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     if (options.grid == 0 && options.lowest == 0 && out.grid > BorderOptions::kDefaultGrid)
         out.warnings.push_back("the cut has " + std::to_string(out.cutPaths) + " paths: the grid grew to " +
                                std::to_string(out.grid) + " samples a side");
+    out.param = options.param;
     out.stretchEfficiency = map.efficiency;
     out.seconds.cut = cutSeconds;
     out.seconds.parameterize = watch.lap();

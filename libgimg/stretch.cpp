@@ -1,5 +1,6 @@
 #include "gimg/stretch.h"
 
+#include "one_blas_thread.h"
 #include "stretch_descent.h"
 #include "stretch_element.h"
 
@@ -12,27 +13,8 @@
 #include <limits>
 #include <numeric>
 
-extern "C" {
-int openblas_get_num_threads(void);
-void openblas_set_num_threads(int count);
-}
-
 namespace gimg {
 namespace {
-
-// CHOLMOD's dense kernels sum in an order that depends on the number of BLAS threads, and its blocks here are
-// too small for several to pay: on the bunny one thread is faster than two.
-class OneBlasThread
-{
-public:
-    OneBlasThread() : before_(openblas_get_num_threads()) { openblas_set_num_threads(1); }
-    ~OneBlasThread() { openblas_set_num_threads(before_); }
-    OneBlasThread(const OneBlasThread&) = delete;
-    OneBlasThread& operator=(const OneBlasThread&) = delete;
-
-private:
-    int before_;
-};
 
 using SparseMatrix = Eigen::SparseMatrix<double>;
 

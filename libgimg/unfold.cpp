@@ -16,8 +16,8 @@ class Unfolder
 {
 public:
     Unfolder(const Mesh& mesh, const BorderOptions& options, const UnfoldJudge& judge,
-             const UnfoldProgress& progress)
-        : mesh_(mesh), options_(options), judge_(judge), progress_(progress),
+             const UnfoldProgress& progress, MapKind kind)
+        : mesh_(mesh), options_(options), judge_(judge), progress_(progress), kind_(kind),
           coarse_(simplify(mesh, ExtremaOptions{}.faces))
     {
     }
@@ -92,7 +92,7 @@ private:
         options.layout = layout;
         Result<SquareDisk> square = layOutBorder(mesh_, cut, options);
         if (!square) return square.error();
-        Result<Parameterization> map = flattenToSquare(*square, [&](double fraction) {
+        Result<Parameterization> map = mapToSquare(*square, kind_, [&](double fraction) {
             if (progress_) progress_("parameterize", fraction);
         });
         if (!map) return map.error();
@@ -108,15 +108,16 @@ private:
     const BorderOptions& options_;
     const UnfoldJudge& judge_;
     const UnfoldProgress& progress_;
+    const MapKind kind_;
     const SimplifiedMesh coarse_;
 };
 
 } // namespace
 
 Result<Unfolded> unfold(const Mesh& mesh, const BorderOptions& options, const UnfoldJudge& judge,
-                        const UnfoldProgress& progress)
+                        const UnfoldProgress& progress, MapKind kind)
 {
-    return Unfolder(mesh, options, judge, progress).run();
+    return Unfolder(mesh, options, judge, progress, kind).run();
 }
 
 } // namespace gimg

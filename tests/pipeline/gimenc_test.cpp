@@ -7,6 +7,7 @@
 #include <nlohmann/json.hpp>
 
 #include <cstdlib>
+#include <set>
 #include <sys/wait.h>
 
 namespace gimg {
@@ -65,6 +66,24 @@ TEST_F(Gimenc, ReportHasTheDocumentedKeys)
         sum += json.at("seconds").at(key).get<double>();
     EXPECT_GE(json.at("seconds").at("total").get<double>(), 0.9 * sum);
     EXPECT_TRUE(json.at("warnings").is_array());
+}
+
+TEST_F(Gimenc, ParamChoosesTheMapAndTheReportNamesIt)
+{
+    const std::string torus = mesh("torus.ply", shapes::torus(2, 1, 24, 12));
+    std::set<std::string> files;
+    for (const std::string param : {"", "mvc", "tutte", "conformal"}) {
+        const Ended ended = gimenc("--bytes 1000 --grid 33 --json -" +
+                                   (param.empty() ? "" : " --param " + param) + torus + file("torus.gim"));
+        ASSERT_EQ(ended.code, 0) << ended.err;
+        const auto json = nlohmann::json::parse(ended.out);
+        EXPECT_EQ(json.at("param"), param.empty() ? "stretch" : param);
+        EXPECT_GT(json.at("psnr").get<double>(), 25);
+        const auto bytes = read(path("torus.gim"));
+        files.insert({bytes.begin(), bytes.end()});
+    }
+    EXPECT_EQ(files.size(), 4u);
+    EXPECT_EQ(gimenc("--bytes 1000 --param best" + torus + file("torus.gim")).code, 2);
 }
 
 TEST_F(Gimenc, ExitCodesTellRefusedUsageAndUnreachableApart)

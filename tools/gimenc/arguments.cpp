@@ -15,6 +15,13 @@ std::string shortest(double number)
     return {text, std::to_chars(text, text + sizeof text, number).ptr};
 }
 
+std::vector<std::string> mapNames()
+{
+    std::vector<std::string> names;
+    for (MapKind kind : kMapKinds) names.push_back(mapName(kind));
+    return names;
+}
+
 } // namespace
 
 void addOptions(CLI::App& app, Arguments& a)
@@ -44,6 +51,10 @@ void addOptions(CLI::App& app, Arguments& a)
     app.add_option("--weld", a.weld,
                    "merge vertices at equal positions: auto (where that harms nothing), always, never")
         ->check(CLI::IsMember({"auto", "always", "never"}));
+    app.add_option("--param", a.param,
+                   "map to the square: stretch (even samples), or linear and fast, but shrinking what sticks "
+                   "out: mvc (mean values), tutte, conformal (harmonic)")
+        ->check(CLI::IsMember(mapNames()));
     app.add_option("--threads", a.threads,
                    "threads to use (default: one a core); the file does not depend on it")
         ->check(positive);
@@ -104,6 +115,7 @@ std::vector<std::string> fileOptions(const Arguments& a)
     if (a.normals != 0) add("--normals", std::to_string(a.normals));
     if (!a.component.empty()) add("--component", a.component);
     if (a.weld != "auto") add("--weld", a.weld);
+    if (a.param != "stretch") add("--param", a.param);
     return words;
 }
 
@@ -123,6 +135,8 @@ EncodeOptions encodeOptions(const Arguments& a)
                                                 : SquareLayout::Auto;
     options.normals = a.normals;
     options.threads = a.threads;
+    for (MapKind kind : kMapKinds)
+        if (a.param == mapName(kind)) options.param = kind;
     if (a.bytes) {
         options.target = EncodeTarget::Bytes;
         options.bytes = *a.bytes;

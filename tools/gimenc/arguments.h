@@ -21,6 +21,7 @@ struct Arguments
     std::string raw, component, json;
     std::string layout = "auto";
     std::string weld = "auto";
+    std::string param = "stretch";
     bool resume = false;
     bool quiet = false;
 };

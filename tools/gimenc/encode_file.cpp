@@ -58,6 +58,7 @@ nlohmann::ordered_json report(const EncodedMesh& encoded, double read, double to
                      {"normals", info.normal_bytes}};
     json["psnr"] = nullptr; // where the surfaces agree there is no finite value
     if (std::isfinite(encoded.psnr)) json["psnr"] = encoded.psnr;
+    json["param"] = mapName(encoded.param);
     json["stretch_efficiency"] = encoded.stretchEfficiency;
     json["cut"] = {{"nodes", encoded.cutNodes},
                    {"paths", encoded.cutPaths},

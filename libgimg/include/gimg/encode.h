@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gimg/border.h"
+#include "gimg/linear_maps.h"
 #include "gimg/mesh.h"
 #include "gimg/result.h"
 
@@ -40,6 +41,7 @@ struct EncodeOptions : EncodeGoal
     int normals = 0; ///< samples a side of the normal image, 2^j + 1; 0: none
     int threads = 0; ///< 0: one a core. The file does not depend on it.
     EncodeProgress progress;
+    MapKind param = MapKind::Stretch; ///< how the surface is mapped to the square
 };
 
 struct EncodeSeconds
@@ -56,7 +58,8 @@ struct EncodedMesh
     int normals = 0;
     double psnr =
         0; ///< of the decoded finest level against the input; infinite if they agree, 0 if nothing is left
-    double stretchEfficiency = 0;            ///< see stretchEfficiency()
+    double stretchEfficiency = 0; ///< see stretchEfficiency()
+    MapKind param = MapKind::Stretch;
     SquareLayout layout = SquareLayout::Cut; ///< Cut or Octahedral
     int cutNodes = 0;
     int cutPaths = 0;

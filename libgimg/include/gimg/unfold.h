@@ -1,7 +1,7 @@
 #pragma once
 
 #include "gimg/border.h"
-#include "gimg/flatten.h"
+#include "gimg/linear_maps.h"
 #include "gimg/mesh.h"
 #include "gimg/result.h"
 
@@ -27,12 +27,13 @@ using UnfoldJudge = std::function<double(const Unfolded&)>;
 /// shows that samples spread far more evenly along an extended cut. The others are cut to a disk, and the cut
 /// is extended to the extrema if that is sure to help; where findExtrema expects less than half the energy to
 /// go, the surface is flattened both ways and the one that `judge` finds better is taken. An extended cut
-/// that does not fit the border is not taken.
+/// that does not fit the border, or whose map fails, is not taken.
 /// @param mesh   connected, manifold, oriented
 /// @param judge  if there is none, less of quarticStretchEnergy is better
-/// Errors: those of layOutBorder and flattenToSquare; BadArgument where the octahedral layout is asked for
+/// @param kind   of the map; layouts and extrema are judged by the stretch-minimising one whatever it is
+/// Errors: those of layOutBorder and mapToSquare; BadArgument where the octahedral layout is asked for
 /// and the surface is not closed or has handles, TargetUnreachable where no star was found.
 Result<Unfolded> unfold(const Mesh& mesh, const BorderOptions& options, const UnfoldJudge& judge = {},
-                        const UnfoldProgress& progress = {});
+                        const UnfoldProgress& progress = {}, MapKind kind = MapKind::Stretch);
 
 } // namespace gimg
