@@ -12,7 +12,9 @@
 #include <chrono>
 #include <cmath>
 #include <cstdio>
+#include <map>
 #include <memory>
+#include <mutex>
 #include <optional>
 #include <string_view>
 
@@ -185,11 +187,11 @@ Status checkScale(const Mesh& mesh, std::vector<std::string>& warnings)
 
 bool isImageSize(int n) { return n >= 3 && n <= BorderOptions::kLargestGrid && ((n - 1) & (n - 2)) == 0; }
 
-Result<codec::Encoder> encoderOf(const SquareDisk& square, const FloatImage& geometry,
+Result<codec::Encoder> encoderOf(const SquareDisk& square, int grid, const FloatImage& geometry,
                                  const FloatImage& normals)
 {
     codec::Source source;
-    source.grid = static_cast<uint32_t>(square.grid);
+    source.grid = static_cast<uint32_t>(grid);
     source.seam = {static_cast<uint32_t>(square.lowest), static_cast<uint32_t>(square.start), square.seam()};
     source.xyz = geometry.samples;
     source.normalGrid = static_cast<uint32_t>(normals.width);
@@ -206,7 +208,7 @@ double codedPsnr(const Unfolded& unfolded, const SurfaceMeasure& measure)
     constexpr size_t kBytes = 6000;
     const Result<FloatImage> geometry = sampleGeometry(unfolded.square, unfolded.map, unfolded.square.grid);
     if (!geometry) return -1;
-    const Result<codec::Encoder> encoder = encoderOf(unfolded.square, *geometry, {});
+    const Result<codec::Encoder> encoder = encoderOf(unfolded.square, unfolded.square.grid, *geometry, {});
     if (!encoder) return -1;
     const Result<std::vector<uint8_t>> file = fileOf(encoder->encodeToBytes(kBytes));
     if (!file) return -1;
@@ -228,12 +230,51 @@ private:
     std::optional<tbb::global_control> limit_;
 };
 
+// Encoders for one map at several grids, each made when first asked for.
+class GridEncoders
+{
+public:
+    GridEncoders(Unfolded unfolded, FloatImage normals)
+        : unfolded_(std::move(unfolded)), normals_(std::move(normals))
+    {
+    }
+
+    struct Sampled
+    {
+        codec::Encoder encoder;
+        double seamLength;
+    };
+
+    Result<std::shared_ptr<const Sampled>> at(int grid)
+    {
+        const std::lock_guard lock(mutex_);
+        std::shared_ptr<const Sampled>& made = made_[grid];
+        if (made) return made;
+        const Result<FloatImage> geometry = sampleGeometry(unfolded_.square, unfolded_.map, grid);
+        if (!geometry) return geometry.error();
+        Result<codec::Encoder> encoder = encoderOf(unfolded_.square, grid, *geometry, normals_);
+        if (!encoder) return encoder.error();
+        made = std::make_shared<const Sampled>(
+            Sampled{std::move(*encoder), gimg::seamLength(unfolded_.square, *geometry)});
+        return made;
+    }
+
+private:
+    const Unfolded unfolded_;
+    const FloatImage normals_;
+    std::mutex mutex_;
+    std::map<int, std::shared_ptr<const Sampled>> made_;
+};
+
+constexpr int kSmallestGrid = 129, kLargestGrid = 513; // that are chosen where the grid is left open
+
 } // namespace
 
 struct MeshEncoder::Prepared
 {
     EncodedMesh report; ///< all but what coding adds
-    codec::Encoder encoder;
+    bool anyGrid;       ///< whether the goal may choose the grid
+    std::unique_ptr<GridEncoders> encoders;
     SurfaceMeasure measure;
     EncodeProgress progress;
     int threads;
@@ -293,35 +334,75 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     out.seconds.parameterize = watch.lap();
 
     stage("sample", 0);
-    const Result<FloatImage> geometry = sampleGeometry(square, map, square.grid);
-    if (!geometry) return geometry.error();
     Result<FloatImage> normals = FloatImage{};
     if (options.normals != 0) normals = sampleNormals(square, map, options.normals);
     if (!normals) return normals.error();
     out.normals = options.normals;
-    out.cutLength = seamLength(square, *geometry);
+    auto encoders = std::make_unique<GridEncoders>(std::move(*unfolded), std::move(*normals));
+    const auto first = encoders->at(out.grid);
+    if (!first) return first.error();
     out.seconds.sample = watch.lap();
-
-    Result<codec::Encoder> encoder = encoderOf(square, *geometry, *normals);
-    if (!encoder) return encoder.error();
-    out.seconds.code = watch.lap();
     measured();
-    return MeshEncoder(std::make_unique<const Prepared>(Prepared{
-        std::move(out), std::move(*encoder), std::move(*measure), options.progress, options.threads}));
+    out.seconds.code = watch.lap();
+    return MeshEncoder(
+        std::make_unique<const Prepared>(Prepared{std::move(out), options.grid == 0, std::move(encoders),
+                                                  std::move(*measure), options.progress, options.threads}));
 }
 
 Result<EncodedMesh> MeshEncoder::encode(const EncodeGoal& goal) const
 {
     const ThreadLimit limit(prepared_->threads);
     if (prepared_->progress) prepared_->progress("code", 0);
+    if (prepared_->anyGrid && goal.target == EncodeTarget::Bytes) return encodeAtBestGrid(goal);
+    if (prepared_->anyGrid && goal.target == EncodeTarget::Psnr) return encodeAtAmpleGrid(goal);
+    return encodeAt(prepared_->report.grid, goal);
+}
+
+Result<EncodedMesh> MeshEncoder::encodeAtBestGrid(const EncodeGoal& goal) const
+{
+    constexpr double kWorth = 0.5; // dB
+    int grid = std::max(kSmallestGrid, prepared_->report.lowest);
+    Result<EncodedMesh> best = encodeAt(grid, goal);
+    while (grid < kLargestGrid) {
+        grid = 2 * grid - 1;
+        Result<EncodedMesh> finer = encodeAt(grid, goal);
+        if (best && (!finer || finer->psnr < best->psnr + kWorth)) break;
+        best = std::move(finer);
+    }
+    return best;
+}
+
+// Near the most that a grid can hold, decibels are bought dearly: the quantisation has to make up for the
+// spacing.
+Result<EncodedMesh> MeshEncoder::encodeAtAmpleGrid(const EncodeGoal& goal) const
+{
+    constexpr double kAmple = 6; // dB
+    int grid = std::max(kSmallestGrid, prepared_->report.lowest);
+    for (; grid < kLargestGrid; grid = 2 * grid - 1) {
+        const Result<EncodedMesh> whole = encodeAt(grid, {EncodeTarget::RawFloat});
+        if (!whole) return whole.error();
+        if (whole->psnr >= goal.psnr + kAmple) break;
+    }
+    Result<EncodedMesh> encoded = encodeAt(grid, goal);
+    if (grid == kLargestGrid && !encoded && encoded.error().kind == ErrorKind::TargetUnreachable)
+        return encodeAt(2 * grid - 1, goal);
+    return encoded;
+}
+
+Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal) const
+{
     Stopwatch watch;
+    const auto sampled = prepared_->encoders->at(grid);
+    if (!sampled) return sampled.error();
     Result<std::vector<uint8_t>> file =
-        code(prepared_->encoder, prepared_->measure, goal, prepared_->progress);
+        code((*sampled)->encoder, prepared_->measure, goal, prepared_->progress);
     if (!file) return file.error();
     const Result<double> psnr = decodedPsnr(*file, prepared_->measure);
     if (!psnr) return psnr.error();
 
     EncodedMesh out = prepared_->report;
+    out.grid = grid;
+    out.cutLength = (*sampled)->seamLength;
     out.file = std::move(*file);
     out.psnr = *psnr;
     if (out.psnr == 0)

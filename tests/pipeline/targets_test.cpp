@@ -60,6 +60,26 @@ TEST(EncodePsnr, ATargetAboveTheGridSaysWhatItHolds)
     EXPECT_THAT(encoded.error().message, testing::HasSubstr("larger --grid"));
 }
 
+TEST(EncodeGrid, LeftOpenGrowsWithTheGoal)
+{
+    const Mesh mesh = shapes::wavySphere(1, 0.3, 5, 24);
+    const Result<MeshEncoder> encoder = MeshEncoder::prepare(mesh, {});
+    ASSERT_TRUE(encoder.ok());
+    const Result<EncodedMesh> small = encoder->encode({EncodeTarget::Bytes, 300});
+    const Result<EncodedMesh> large = encoder->encode({EncodeTarget::Bytes, 12000});
+    ASSERT_TRUE(small.ok() && large.ok());
+    EXPECT_EQ(small->grid, 129);
+    EXPECT_GT(large->grid, 129);
+    EXPECT_GT(large->psnr, encode(mesh, forBytes(12000, 129)).psnr + 0.5);
+    const Result<EncodedMesh> coarse = encoder->encode({EncodeTarget::Psnr, 0, 50});
+    const Result<EncodedMesh> fine = encoder->encode({EncodeTarget::Psnr, 0, 80});
+    ASSERT_TRUE(coarse.ok() && fine.ok());
+    EXPECT_EQ(coarse->grid, 129);
+    EXPECT_GT(fine->grid, 129);
+    EXPECT_GE(fine->psnr, 80);
+    EXPECT_EQ(encoder->encode({EncodeTarget::RawFloat})->grid, BorderOptions::kDefaultGrid);
+}
+
 TEST(EncodeRaw, FloatIsBetterThan12BitsAndBothCloseToTheSurface)
 {
     const Mesh mesh = shapes::torus(3, 1, 96, 48);

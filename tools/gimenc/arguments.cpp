@@ -33,7 +33,9 @@ void addOptions(CLI::App& app, Arguments& a)
             return good ? std::string() : text + " is not a positive number";
         },
         "");
-    app.add_option("--grid", a.grid, "samples a side, 2^j + 1 (default: 257, more if the cut needs it)");
+    app.add_option(
+        "--grid", a.grid,
+        "samples a side, 2^j + 1 (default: what suits --bytes or --psnr, 129 to 1025; 257 for --raw)");
     app.add_option("--lowest", a.lowest,
                    "samples a side of the lowest level of detail, 2^l + 1 (default: 33, or as needed)");
     app.add_option("--layout", a.layout,

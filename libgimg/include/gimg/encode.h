@@ -35,7 +35,10 @@ struct EncodeGoal
 
 struct EncodeOptions : EncodeGoal
 {
-    int grid = 0;   ///< samples a side, 2^j + 1; 0 chooses, see BorderOptions
+    /// Samples a side, 2^j + 1. 0 chooses: for a number of bytes the grid grows from 129 to 513 as long as a
+    /// finer one is worth half a decibel, for a PSNR it is the smallest whose samples hold 6 dB more (1025
+    /// where 513 does not reach it), and raw grids have 257. It is never smaller than what the cut needs.
+    int grid = 0;
     int lowest = 0; ///< lowest level of detail; 0 chooses
     SquareLayout layout = SquareLayout::Auto;
     int normals = 0; ///< samples a side of the normal image, 2^j + 1; 0: none
@@ -89,6 +92,9 @@ public:
     Result<EncodedMesh> encode(const EncodeGoal& goal) const;
 
 private:
+    Result<EncodedMesh> encodeAt(int grid, const EncodeGoal& goal) const;
+    Result<EncodedMesh> encodeAtBestGrid(const EncodeGoal& goal) const;
+    Result<EncodedMesh> encodeAtAmpleGrid(const EncodeGoal& goal) const;
     struct Prepared;
     explicit MeshEncoder(std::unique_ptr<const Prepared> prepared);
     std::unique_ptr<const Prepared> prepared_;
