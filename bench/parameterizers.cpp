@@ -116,7 +116,7 @@ Result<SquareDisk> openMesh(const std::string& path)
 std::vector<Vec2> ourMap(const SquareDisk& square, MapKind kind, std::string& error)
 {
     if (kind == MapKind::Stretch) {
-        Result<Parameterization> map = mapToSquare(square, kind);
+        Result<Parameterization> map = mapToSquare(square, kind, {}, Density::Even);
         if (map) return std::move(map->st);
         return error = map.error().message, std::vector<Vec2>{};
     }

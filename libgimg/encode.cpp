@@ -310,13 +310,12 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     };
     double cutSeconds = 0;
     Result<Unfolded> unfolded = unfold(
-        mesh, {options.grid, options.lowest, options.layout},
+        mesh, {{options.grid, options.lowest, options.layout}, options.param, options.density},
         [&](const Unfolded& candidate) { return codedPsnr(candidate, measured()); },
         [&](const char* name, double fraction) {
             if (cutSeconds == 0 && std::string_view(name) != "cut") cutSeconds = watch.lap();
             stage(name, fraction);
-        },
-        options.param);
+        });
     if (!unfolded) return unfolded.error();
     const auto& [cut, layout, extrema, square, map] = *unfolded;
     out.cutNodes = cut.nodeCount();

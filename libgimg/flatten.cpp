@@ -210,7 +210,7 @@ Status startCoarsest(Level& level)
 
 } // namespace
 
-Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progress& progress)
+Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progress& progress, Density density)
 {
     constexpr DescentOptions kFirstDescent{50, 1e-4}, kReleaseDescent{200, 1e-4}, kDescent{30, 1e-3},
         kLastDescent{12, 1e-3};
@@ -219,9 +219,11 @@ Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progres
     const BorderTies ties = borderTies(square);
     bool released = false;
     const Mesh& disk = square.disk.mesh;
-    const std::vector<double> onSurface = curvatureImportance(square.surface, square.grid);
     std::vector<double> importance;
-    for (int v : square.disk.origin) importance.push_back(onSurface[v]);
+    if (density == Density::Curvature) {
+        const std::vector<double> onSurface = curvatureImportance(square.surface, square.grid);
+        for (int v : square.disk.origin) importance.push_back(onSurface[v]);
+    }
     Parameterization result;
     result.st = square.borderPosition;
     std::optional<Hierarchy> hierarchy(std::in_place, disk, square.squareSides);

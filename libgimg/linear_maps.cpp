@@ -66,10 +66,11 @@ Result<std::vector<Vec2>> linearMap(const SquareDisk& square, MapKind kind)
     return st;
 }
 
-Result<Parameterization> mapToSquare(const SquareDisk& square, MapKind kind, const Progress& progress)
+Result<Parameterization> mapToSquare(const SquareDisk& square, MapKind kind, const Progress& progress,
+                                     Density density)
 {
     if (progress) progress(0);
-    if (kind == MapKind::Stretch) return flattenToSquare(square, progress);
+    if (kind == MapKind::Stretch) return flattenToSquare(square, progress, density);
     Result<std::vector<Vec2>> st = linearMap(square, kind);
     if (!st) return st.error();
     if (const int flipped = flippedTriangles(square.disk.mesh.faces, *st); flipped > 0)

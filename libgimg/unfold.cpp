@@ -15,9 +15,9 @@ constexpr double kSure = 0.5; // of the energy: below, the extended cut is taken
 class Unfolder
 {
 public:
-    Unfolder(const Mesh& mesh, const BorderOptions& options, const UnfoldJudge& judge,
-             const UnfoldProgress& progress, MapKind kind)
-        : mesh_(mesh), options_(options), judge_(judge), progress_(progress), kind_(kind),
+    Unfolder(const Mesh& mesh, const UnfoldOptions& options, const UnfoldJudge& judge,
+             const UnfoldProgress& progress)
+        : mesh_(mesh), options_(options), judge_(judge), progress_(progress),
           coarse_(simplify(mesh, ExtremaOptions{}.faces))
     {
     }
@@ -92,9 +92,12 @@ private:
         options.layout = layout;
         Result<SquareDisk> square = layOutBorder(mesh_, cut, options);
         if (!square) return square.error();
-        Result<Parameterization> map = mapToSquare(*square, kind_, [&](double fraction) {
-            if (progress_) progress_("parameterize", fraction);
-        });
+        Result<Parameterization> map = mapToSquare(
+            *square, options_.param,
+            [&](double fraction) {
+                if (progress_) progress_("parameterize", fraction);
+            },
+            options_.density);
         if (!map) return map.error();
         return Unfolded{std::move(cut), layout, extrema, std::move(*square), std::move(*map)};
     }
@@ -105,19 +108,18 @@ private:
     }
 
     const Mesh& mesh_;
-    const BorderOptions& options_;
+    const UnfoldOptions& options_;
     const UnfoldJudge& judge_;
     const UnfoldProgress& progress_;
-    const MapKind kind_;
     const SimplifiedMesh coarse_;
 };
 
 } // namespace
 
-Result<Unfolded> unfold(const Mesh& mesh, const BorderOptions& options, const UnfoldJudge& judge,
-                        const UnfoldProgress& progress, MapKind kind)
+Result<Unfolded> unfold(const Mesh& mesh, const UnfoldOptions& options, const UnfoldJudge& judge,
+                        const UnfoldProgress& progress)
 {
-    return Unfolder(mesh, options, judge, progress, kind).run();
+    return Unfolder(mesh, options, judge, progress).run();
 }
 
 } // namespace gimg

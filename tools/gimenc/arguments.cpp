@@ -53,6 +53,8 @@ void addOptions(CLI::App& app, Arguments& a)
     app.add_option("--weld", a.weld,
                    "merge vertices at equal positions: auto (where that harms nothing), always, never")
         ->check(CLI::IsMember({"auto", "always", "never"}));
+    app.add_option("--density", a.density, "samples: closer where the surface bends (curvature), or even")
+        ->check(CLI::IsMember({"curvature", "even"}));
     app.add_option("--param", a.param,
                    "map to the square: stretch (even samples), or linear and fast, but shrinking what sticks "
                    "out: mvc (mean values), tutte, conformal (harmonic)")
@@ -117,6 +119,7 @@ std::vector<std::string> fileOptions(const Arguments& a)
     if (a.normals != 0) add("--normals", std::to_string(a.normals));
     if (!a.component.empty()) add("--component", a.component);
     if (a.weld != "auto") add("--weld", a.weld);
+    if (a.density != "curvature") add("--density", a.density);
     if (a.param != "stretch") add("--param", a.param);
     return words;
 }
@@ -137,6 +140,7 @@ EncodeOptions encodeOptions(const Arguments& a)
                                                 : SquareLayout::Auto;
     options.normals = a.normals;
     options.threads = a.threads;
+    options.density = a.density == "even" ? Density::Even : Density::Curvature;
     for (MapKind kind : kMapKinds)
         if (a.param == mapName(kind)) options.param = kind;
     if (a.bytes) {

@@ -20,6 +20,7 @@ struct Arguments
     std::optional<double> psnr;
     std::string raw, component, json;
     std::string layout = "auto";
+    std::string density = "curvature";
     std::string weld = "auto";
     std::string param = "stretch";
     bool resume = false;

@@ -45,6 +45,7 @@ struct EncodeOptions : EncodeGoal
     int threads = 0; ///< 0: one a core. The file does not depend on it.
     EncodeProgress progress;
     MapKind param = MapKind::Stretch; ///< how the surface is mapped to the square
+    Density density = Density::Curvature;
 };
 
 struct EncodeSeconds

@@ -15,6 +15,13 @@ struct Parameterization
     double efficiency = 0; ///< stretch efficiency, see stretchEfficiency()
 };
 
+/// How samples are to be spread over the surface.
+enum class Density
+{
+    Curvature, ///< closer where it bends: the stretch counts by the root of the squared curvature
+    Even,      ///< the same everywhere: the stretch alone counts
+};
+
 /// Called now and then with the fraction done, in [0,1].
 using Progress = std::function<void(double)>;
 
@@ -27,6 +34,7 @@ using Progress = std::function<void(double)>;
 /// the mates. Boundary vertices of the surface slide along their side of the square. Errors: FlippedTriangle
 /// if no embedding was found. Source: Sander et al. 2002 (hierarchical stretch); Floater 2003; thesis §3.1.1;
 /// the seam that slides after Aigerman & Lipman 2015 (orbifold embeddings).
-Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progress& progress = {});
+Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progress& progress = {},
+                                         Density density = Density::Curvature);
 
 } // namespace gimg

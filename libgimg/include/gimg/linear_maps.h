@@ -29,7 +29,9 @@ const char* mapName(MapKind kind);
 /// Maps the disk onto the unit square with the border where the layout put it. Linear maps shrink what sticks
 /// out exponentially with its length, down to what doubles cannot tell apart; Stretch does not.
 /// Errors: FlippedTriangle with the number of triangles that are flipped or have no area.
-Result<Parameterization> mapToSquare(const SquareDisk& square, MapKind kind, const Progress& progress = {});
+/// @param density  for Stretch only
+Result<Parameterization> mapToSquare(const SquareDisk& square, MapKind kind, const Progress& progress = {},
+                                     Density density = Density::Curvature);
 
 /// The same for linear maps with whatever triangles come out flipped: one (s,t) per vertex.
 /// Errors: BadArgument for MapKind::Stretch; FlippedTriangle if the system could not be solved.

@@ -17,6 +17,12 @@ struct Unfolded
     Parameterization map;
 };
 
+struct UnfoldOptions : BorderOptions
+{
+    MapKind param = MapKind::Stretch; ///< layouts and extrema are judged by Stretch whatever it is
+    Density density = Density::Curvature;
+};
+
 /// Called with the stage, "cut" or "parameterize", and the fraction of it that is done.
 using UnfoldProgress = std::function<void(const char* stage, double fraction)>;
 
@@ -30,10 +36,9 @@ using UnfoldJudge = std::function<double(const Unfolded&)>;
 /// that does not fit the border, or whose map fails, is not taken.
 /// @param mesh   connected, manifold, oriented
 /// @param judge  if there is none, less of quarticStretchEnergy is better
-/// @param kind   of the map; layouts and extrema are judged by the stretch-minimising one whatever it is
 /// Errors: those of layOutBorder and mapToSquare; BadArgument where the octahedral layout is asked for
 /// and the surface is not closed or has handles, TargetUnreachable where no star was found.
-Result<Unfolded> unfold(const Mesh& mesh, const BorderOptions& options, const UnfoldJudge& judge = {},
-                        const UnfoldProgress& progress = {}, MapKind kind = MapKind::Stretch);
+Result<Unfolded> unfold(const Mesh& mesh, const UnfoldOptions& options, const UnfoldJudge& judge = {},
+                        const UnfoldProgress& progress = {});
 
 } // namespace gimg
