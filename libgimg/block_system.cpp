@@ -96,31 +96,41 @@ BlockSystem::BlockSystem(const std::vector<Triangle>& faces, const std::vector<T
     : first_(own.size() + 1, 0), diagonal_(own), right_(right)
 {
     const Fans fans(faces, own.size());
-    // Every corner leads to two other vertices, each met twice where the surface is closed around the vertex.
-    for (size_t v = 0; v < own.size(); ++v) first_[v + 1] = 2 * fans.first[v + 1];
-    entries_.assign(2 * fans.corners.size(), {-1, {}});
+    const auto forEachNeighbour = [&](int v, auto visit) {
+        for (int c = fans.first[v]; c < fans.first[v + 1] && !fixed[v]; ++c)
+            for (int step = 1; step < 3; ++step) {
+                const int other = (fans.corners[c].corner + step) % 3;
+                const int column = faces[fans.corners[c].face][other];
+                if (!fixed[column]) visit(column, fans.corners[c], step);
+            }
+    };
+    forEach(own.size(), [&](int v) {
+        std::vector<int> columns;
+        forEachNeighbour(v, [&](int column, const Corner&, int) { columns.push_back(column); });
+        std::sort(columns.begin(), columns.end());
+        first_[v + 1] = static_cast<int>(std::unique(columns.begin(), columns.end()) - columns.begin());
+    });
+    for (size_t v = 0; v < own.size(); ++v) first_[v + 1] += first_[v];
+    entries_.resize(first_.back());
     forEach(own.size(), [&](int v) {
         if (fixed[v]) {
             diagonal_[v] = {1, 0, 0, 1, 0, 1};
             right_[v].setZero();
             return;
         }
-        Entry* const begin = &entries_[0] + first_[v];
-        Entry* end = begin;
         for (int c = fans.first[v]; c < fans.first[v + 1]; ++c) {
-            const auto [f, k] = fans.corners[c];
-            const TriangleEquations& e = equations[f];
-            diagonal_[v] += e.pair[k];
-            right_[v] += e.right[k];
-            for (const int other : {(k + 1) % 3, (k + 2) % 3}) {
-                const int column = faces[f][other];
-                if (fixed[column]) continue;
-                Entry* at = std::find_if(begin, end, [&](const Entry& x) { return x.column == column; });
-                if (at == end) *end++ = {column, {}};
-                at->block += e.pair[other == (k + 1) % 3 ? 3 + k : 3 + other];
-            }
+            const TriangleEquations& e = equations[fans.corners[c].face];
+            diagonal_[v] += e.pair[fans.corners[c].corner];
+            right_[v] += e.right[fans.corners[c].corner];
         }
-        std::sort(begin, end, [](const Entry& a, const Entry& b) { return a.column < b.column; });
+        Entry* const begin = entries_.data() + first_[v];
+        Entry* end = begin;
+        forEachNeighbour(v, [&](int column, const Corner& at, int step) {
+            Entry* entry = std::find_if(begin, end, [&](const Entry& e) { return e.column == column; });
+            if (entry == end) *end++ = {column, {}};
+            // Pair 3 + k is that of corners k and k + 1.
+            entry->block += equations[at.face].pair[3 + (step == 1 ? at.corner : (at.corner + 2) % 3)];
+        });
     });
 }
 
@@ -128,8 +138,7 @@ void BlockSystem::multiply(const std::vector<Vec3>& x, std::vector<Vec3>& y) con
 {
     forEach(x.size(), [&](int v) {
         Vec3 sum = diagonal_[v] * x[v];
-        for (int k = first_[v]; k < first_[v + 1] && entries_[k].column >= 0; ++k)
-            sum += entries_[k].block * x[entries_[k].column];
+        for (int k = first_[v]; k < first_[v + 1]; ++k) sum += entries_[k].block * x[entries_[k].column];
         y[v] = sum;
     });
 }

@@ -21,7 +21,6 @@ namespace {
 constexpr double kHold = 0.05; // weight of staying in place, where 1 is that of a gap to the mesh
 constexpr double kTolerance = 1e-3;
 constexpr int kMostIterations = 200;
-constexpr int kFewestSamples = 100000; // on the mesh; one a sample of the image where that is more
 
 Vec3 areaVector(const std::vector<Vec3>& x, const Triangle& t)
 {
@@ -47,12 +46,7 @@ public:
 
     void fit(SurfacePull& pull, double smoothing)
     {
-        const std::vector<TriangleEquations> equations = pull.equations(positions_, faces_);
-        std::vector<SymmetricBlock> own(positions_.size());
-        std::vector<Vec3> right(positions_.size());
-        hold(smoothing, own, right);
-        const BlockSystem system(faces_, equations, own, right, fixed_);
-        std::vector<Vec3> step = system.solve(kTolerance, kMostIterations);
+        std::vector<Vec3> step = equations(pull, smoothing).solve(kTolerance, kMostIterations);
         shortenWhereCellsFold(step);
         for (size_t v = 0; v < step.size(); ++v) positions_[v] += step[v];
         image_ = imageOf(positions_);
@@ -60,6 +54,14 @@ public:
     }
 
 private:
+    BlockSystem equations(SurfacePull& pull, double smoothing) const
+    {
+        std::vector<SymmetricBlock> own(positions_.size());
+        std::vector<Vec3> right(positions_.size());
+        hold(smoothing, own, right);
+        return BlockSystem(faces_, pull.equations(positions_, faces_), own, right, fixed_);
+    }
+
     /// Adds  kHold area_v |step_v - smoothing T_v (middle of v's neighbours - x_v)|^2,  T_v along the
     /// surface.
     void hold(double smoothing, std::vector<SymmetricBlock>& own, std::vector<Vec3>& right) const
@@ -182,12 +184,19 @@ Result<double> psnrOf(const GluedGrid& grid, const FloatImage& image, const Surf
     return distance->psnr();
 }
 
+// Samples drawn on the mesh: as many as the image has, more if they are few.
+int samplesFor(int pixels)
+{
+    constexpr int kFew = 100000, kMostAPixel = 16;
+    return std::max(pixels, std::min(kFew, kMostAPixel * pixels));
+}
+
 FloatImage fitted(const Mesh& mesh, const FloatImage& image, const GluedGrid& grid, const FitOptions& options)
 {
     const UnitFrame frame(mesh);
     NearestTree tree(frame.inside(mesh), mesh.faces);
     tree.makeNormals();
-    SurfacePull pull(std::move(tree), std::max(kFewestSamples, image.width * image.height));
+    SurfacePull pull(std::move(tree), samplesFor(image.width * image.height));
     GridSurface surface(grid, frame, image);
     for (int round = 0; round < options.rounds; ++round) surface.fit(pull, options.smoothing);
     return surface.image();

@@ -11,7 +11,28 @@ namespace {
 
 constexpr uint64_t kSeed = 2;   // not that of SurfaceMeasure: it would judge by the samples fitted to
 constexpr double kAlong = 0.02; // weight of a gap along the mesh, where 1 is that of one across it
-constexpr double kPlacesOnSurface = 4e5; // about as many; at least four a triangle
+
+// Places on a triangle that stand for equal parts of it, as weights of its corners: on a fine grid the three
+// that integrate squares of linear functions exactly, on a coarse one, whose triangles span more of the mesh,
+// the centres of 9 or 16 equal triangles.
+std::vector<Vec3> placesOnTriangle(size_t triangles)
+{
+    constexpr double kPlaces = 4e5; // about as many on all triangles
+    const auto rows = static_cast<int>(std::lround(std::sqrt(kPlaces / static_cast<double>(triangles))));
+    std::vector<Vec3> places;
+    if (rows <= 2) {
+        for (int k = 0; k < 3; ++k) places.push_back((Vec3::Ones() + 3 * Vec3::Unit(k)) / 6);
+        return places;
+    }
+    const int parts = std::min(rows, 4);
+    for (int u = 0; u < parts; ++u)
+        for (int v = 0; v < 2 * (parts - u) - 1; ++v) { // upright and inverted triangles in turn
+            const double centre = v % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
+            const double b = (u + centre) / parts, c = (v / 2 + centre) / parts;
+            places.emplace_back(1 - b - c, b, c);
+        }
+    return places;
+}
 
 } // namespace
 
@@ -61,13 +82,12 @@ std::vector<TriangleEquations> SurfacePull::equations(const std::vector<Vec3>& p
     const Surface surface{positions, faces};
     findHits(surface);
     std::vector<TriangleEquations> equations(faces.size());
-    const double places = kPlacesOnSurface / static_cast<double>(faces.size());
-    const int parts = std::max(2, static_cast<int>(std::lround(std::sqrt(places))));
+    const std::vector<Vec3> places = placesOnTriangle(faces.size());
     tbb::parallel_for(tbb::blocked_range<int>(0, static_cast<int>(faces.size()), 64),
                       [&](const tbb::blocked_range<int>& range) {
                           int near = 0;
                           for (int f = range.begin(); f < range.end(); ++f)
-                              equations[f] = onFace(surface, f, parts, near);
+                              equations[f] = onFace(surface, f, places, near);
                       });
     return equations;
 }
@@ -90,7 +110,8 @@ void SurfacePull::findHits(const Surface& surface)
     for (int i = 0; i < count; ++i) byFace_[next[hits_[i].face]++] = i;
 }
 
-TriangleEquations SurfacePull::onFace(const Surface& surface, int face, int parts, int& near) const
+TriangleEquations SurfacePull::onFace(const Surface& surface, int face, const std::vector<Vec3>& places,
+                                      int& near) const
 {
     TriangleEquations sum;
     const Triangle& t = surface.faces[face];
@@ -102,19 +123,15 @@ TriangleEquations SurfacePull::onFace(const Surface& surface, int face, int part
         if (normal.dot(areaVector) > 0)
             Pair{weights, sample.point - surface.at(t, weights), normal, sampleArea_}.addTo(sum);
     }
-    // From the centres of parts x parts equal triangles: row u has upright and inverted ones in turn.
-    const double area = areaVector.norm() / (parts * parts);
-    for (int u = 0; u < parts; ++u)
-        for (int v = 0; v < 2 * (parts - u) - 1; ++v) {
-            const double centre = v % 2 == 0 ? 1.0 / 3 : 2.0 / 3;
-            const double b = (u + centre) / parts, c = (v / 2 + centre) / parts;
-            const Vec3 weights(1 - b - c, b, c), place = surface.at(t, weights);
-            near = mesh_.nearest(place, near).face;
-            const Vec3& normal = mesh_.faceNormal(near);
-            if (!(normal.dot(areaVector) > 0)) continue;
-            const Vec3 target = mesh_.pointOfFace(near, mesh_.nearestOnFace(place, near));
-            Pair{weights, target - place, normal, area}.addTo(sum);
-        }
+    const double area = areaVector.norm() / static_cast<double>(places.size());
+    for (const Vec3& weights : places) {
+        const Vec3 place = surface.at(t, weights);
+        near = mesh_.nearest(place, near).face;
+        const Vec3& normal = mesh_.faceNormal(near);
+        if (!(normal.dot(areaVector) > 0)) continue;
+        const Vec3 target = mesh_.pointOfFace(near, mesh_.nearestOnFace(place, near));
+        Pair{weights, target - place, normal, area}.addTo(sum);
+    }
     return sum;
 }
 

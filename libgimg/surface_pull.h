@@ -28,7 +28,8 @@ private:
     struct Pair;
 
     void findHits(const Surface& surface);
-    TriangleEquations onFace(const Surface& surface, int face, int parts, int& near) const;
+    TriangleEquations onFace(const Surface& surface, int face, const std::vector<Vec3>& places,
+                             int& near) const;
 
     /// The place on the surface nearest to a sample of the mesh.
     struct Hit
