@@ -3,6 +3,7 @@
 #include "codec/encode.h"
 #include "gimg/decode.h"
 #include "gimg/distance.h"
+#include "gimg/fit.h"
 #include "gimg/sample.h"
 #include "gimg/unfold.h"
 
@@ -214,6 +215,21 @@ double codedPsnr(const Unfolded& unfolded, const SurfaceMeasure& measure)
     return psnr ? *psnr : -1;
 }
 
+Result<FitGain> fitImages(const Mesh& mesh, const SurfaceMeasure& measure, const SquareDisk& square,
+                          FloatImage& geometry, FloatImage& normals)
+{
+    const GridSeam seam{square.lowest, square.start, square.seam()};
+    Result<FittedGeometry> fitted = fitGeometry(mesh, measure, geometry, seam);
+    if (!fitted) return fitted.error();
+    geometry = std::move(fitted->image);
+    if (normals.width > 0) {
+        Result<FloatImage> follow = fitNormals(mesh, geometry, seam, normals);
+        if (!follow) return follow.error();
+        normals = std::move(*follow);
+    }
+    return FitGain{fitted->psnrBefore, fitted->psnrAfter};
+}
+
 // As many threads as asked for while it lives.
 class ThreadLimit
 {
@@ -293,14 +309,22 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     out.seconds.parameterize = watch.lap();
 
     stage("sample", 0);
-    const Result<FloatImage> geometry = sampleGeometry(square, map, square.grid);
+    Result<FloatImage> geometry = sampleGeometry(square, map, square.grid);
     if (!geometry) return geometry.error();
     Result<FloatImage> normals = FloatImage{};
     if (options.normals != 0) normals = sampleNormals(square, map, options.normals);
     if (!normals) return normals.error();
     out.normals = options.normals;
-    out.cutLength = seamLength(square, *geometry);
     out.seconds.sample = watch.lap();
+
+    if (options.fit && square.grid <= EncodeOptions::kLargestFit) {
+        stage("fit", 0);
+        const Result<FitGain> gain = fitImages(mesh, measured(), square, *geometry, *normals);
+        if (!gain) return gain.error();
+        out.fit = *gain;
+        out.seconds.fit = watch.lap();
+    }
+    out.cutLength = seamLength(square, *geometry);
 
     Result<codec::Encoder> encoder = encoderOf(square, *geometry, *normals);
     if (!encoder) return encoder.error();

@@ -22,6 +22,7 @@ struct Arguments
     std::string layout = "auto";
     std::string weld = "auto";
     std::string param = "stretch";
+    bool noFit = false;
     bool resume = false;
     bool quiet = false;
 };

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,8 @@ struct EncodeGoal
 
 struct EncodeOptions : EncodeGoal
 {
+    static constexpr int kLargestFit = 1025; ///< larger grids are not fitted: it would take gigabytes
+
     int grid = 0;   ///< samples a side, 2^j + 1; 0 chooses, see BorderOptions
     int lowest = 0; ///< lowest level of detail; 0 chooses
     SquareLayout layout = SquareLayout::Auto;
@@ -42,11 +45,18 @@ struct EncodeOptions : EncodeGoal
     int threads = 0; ///< 0: one a core. The file does not depend on it.
     EncodeProgress progress;
     MapKind param = MapKind::Stretch; ///< how the surface is mapped to the square
+    bool fit = true; ///< move the samples to where the triangles between them fit the mesh, see fitGeometry
+};
+
+/// What the fit is worth: PSNR of the triangles between the samples, before anything is lost in coding.
+struct FitGain
+{
+    double psnrBefore = 0, psnrAfter = 0;
 };
 
 struct EncodeSeconds
 {
-    double cut = 0, parameterize = 0, sample = 0, code = 0;
+    double cut = 0, parameterize = 0, sample = 0, fit = 0, code = 0;
 };
 
 struct EncodedMesh
@@ -63,8 +73,9 @@ struct EncodedMesh
     SquareLayout layout = SquareLayout::Cut; ///< Cut or Octahedral
     int cutNodes = 0;
     int cutPaths = 0;
-    int cutExtrema = 0;   ///< tips that the cut was extended to
-    double cutLength = 0; ///< of the seam and the boundary as sampled, in the mesh's unit
+    int cutExtrema = 0;         ///< tips that the cut was extended to
+    std::optional<FitGain> fit; ///< none: not asked for, or a grid above EncodeOptions::kLargestFit
+    double cutLength = 0;       ///< of the seam and the boundary as sampled, in the mesh's unit
     EncodeSeconds seconds;
     std::vector<std::string> warnings;
 };
