@@ -1,5 +1,6 @@
 #include "gimg/distance.h"
 
+#include "area_sampler.h"
 #include "mesh_check.h"
 #include "nearest_tree.h"
 
@@ -33,26 +34,6 @@ std::optional<double> SurfaceDistance::normalRms() const
 
 namespace {
 
-/// Random numbers in [0, 1), a sequence of its own for every seed and index (SplitMix64).
-class Random
-{
-public:
-    Random(uint64_t seed, uint64_t index) : state_(mixed(mixed(seed + kStep) ^ index)) {}
-    double next() { return static_cast<double>(mixed(state_ += kStep) >> 11) * 0x1p-53; }
-
-private:
-    static constexpr uint64_t kStep = 0x9e3779b97f4a7c15U;
-
-    static uint64_t mixed(uint64_t z)
-    {
-        z = (z ^ z >> 30) * 0xbf58476d1ce4e5b9U;
-        z = (z ^ z >> 27) * 0x94d049bb133111ebU;
-        return z ^ z >> 31;
-    }
-
-    uint64_t state_;
-};
-
 /// A surface in the frame of the reference: a tree for nearest points, samples, and the vertices.
 class Surface
 {
@@ -61,20 +42,15 @@ public:
         : tree_(frame.inside(mesh), mesh.faces)
     {
         if (tooFar()) return;
-        double area = 0;
-        areaUpTo_.reserve(mesh.faces.size());
-        const std::vector<Vec3>& positions = tree_.positions();
-        for (const Triangle& t : mesh.faces) {
-            const Vec3& p = positions[t[0]];
-            areaUpTo_.push_back(area += (positions[t[1]] - p).cross(positions[t[2]] - p).norm());
-        }
-        if (!(area > 0)) return;
-        takePoints(options);
+        const AreaSampler sampler(tree_.positions(), tree_.faces());
+        hasArea_ = sampler.hasArea();
+        if (!hasArea_) return;
+        takePoints(sampler, options);
         if (options.normals) tree_.makeNormals();
     }
 
     bool tooFar() const { return tree_.tooLarge(); }
-    bool hasArea() const { return !areaUpTo_.empty() && areaUpTo_.back() > 0; }
+    bool hasArea() const { return hasArea_; }
     const NearestTree& tree() const { return tree_; }
 
     /// The samples, then every vertex of a face.
@@ -83,39 +59,25 @@ public:
     const std::vector<int>& sampleFaces() const { return sampleFaces_; }
 
 private:
-    void takePoints(const DistanceOptions& options)
+    void takePoints(const AreaSampler& sampler, const DistanceOptions& options)
     {
-        // One sample in each of equal slices of the area, in the order of the faces.
-        const std::vector<Triangle>& faces = tree_.faces();
         const std::vector<Vec3>& positions = tree_.positions();
         points_.reserve(static_cast<size_t>(options.samples) + positions.size());
         for (int i = 0; i < options.samples; ++i) {
-            Random random(options.seed, static_cast<uint64_t>(i));
-            const double area = areaUpTo_.back() * (i + random.next()) / options.samples;
-            const auto at =
-                std::upper_bound(areaUpTo_.begin(), areaUpTo_.end(), std::min(area, areaUpTo_.back()));
-            const auto f = at != areaUpTo_.end() ? at - areaUpTo_.begin() : lastWithArea();
-            const Triangle& t = faces[static_cast<size_t>(f)];
-            if (options.normals) sampleFaces_.push_back(static_cast<int>(f));
-            const double s = std::sqrt(random.next()), r = random.next();
-            points_.push_back((1 - s) * positions[t[0]] + s * (1 - r) * positions[t[1]] +
-                              s * r * positions[t[2]]);
+            const AreaSampler::Sample sample = sampler.sample(i, options.samples, options.seed);
+            if (options.normals) sampleFaces_.push_back(sample.face);
+            points_.push_back(sample.point);
         }
         std::vector<bool> taken(positions.size(), false);
-        for (const Triangle& t : faces)
+        for (const Triangle& t : tree_.faces())
             for (int v : t) {
                 if (!taken[v]) points_.push_back(positions[v]);
                 taken[v] = true;
             }
     }
 
-    std::ptrdiff_t lastWithArea() const
-    {
-        return std::lower_bound(areaUpTo_.begin(), areaUpTo_.end(), areaUpTo_.back()) - areaUpTo_.begin();
-    }
-
     NearestTree tree_;
-    std::vector<double> areaUpTo_;
+    bool hasArea_ = false;
     std::vector<Vec3> points_;
     std::vector<int> sampleFaces_;
 };

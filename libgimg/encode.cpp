@@ -3,6 +3,7 @@
 #include "codec/encode.h"
 #include "gimg/decode.h"
 #include "gimg/distance.h"
+#include "gimg/fit.h"
 #include "gimg/sample.h"
 #include "gimg/unfold.h"
 
@@ -216,6 +217,21 @@ double codedPsnr(const Unfolded& unfolded, const SurfaceMeasure& measure)
     return psnr ? *psnr : -1;
 }
 
+Result<FitGain> fitImages(const Mesh& mesh, const SurfaceMeasure& measure, const SquareDisk& square,
+                          FloatImage& geometry, FloatImage& normals)
+{
+    const GridSeam seam{square.lowest, square.start, square.seam()};
+    Result<FittedGeometry> fitted = fitGeometry(mesh, measure, geometry, seam);
+    if (!fitted) return fitted.error();
+    geometry = std::move(fitted->image);
+    if (normals.width > 0) {
+        Result<FloatImage> follow = fitNormals(mesh, geometry, seam, normals);
+        if (!follow) return follow.error();
+        normals = std::move(*follow);
+    }
+    return FitGain{fitted->psnrBefore, fitted->psnrAfter};
+}
+
 // As many threads as asked for while it lives.
 class ThreadLimit
 {
@@ -234,8 +250,8 @@ private:
 class GridEncoders
 {
 public:
-    GridEncoders(Unfolded unfolded, FloatImage normals)
-        : unfolded_(std::move(unfolded)), normals_(std::move(normals))
+    GridEncoders(Unfolded unfolded, FloatImage normals, bool fit)
+        : unfolded_(std::move(unfolded)), normals_(std::move(normals)), fit_(fit)
     {
     }
 
@@ -243,25 +259,40 @@ public:
     {
         codec::Encoder encoder;
         double seamLength;
+        std::optional<FitGain> fit;
+        double sampleSeconds, fitSeconds;
     };
 
-    Result<std::shared_ptr<const Sampled>> at(int grid)
+    Result<std::shared_ptr<const Sampled>> at(int grid, const SurfaceMeasure& measure)
     {
         const std::lock_guard lock(mutex_);
         std::shared_ptr<const Sampled>& made = made_[grid];
         if (made) return made;
-        const Result<FloatImage> geometry = sampleGeometry(unfolded_.square, unfolded_.map, grid);
+        Stopwatch watch;
+        Result<FloatImage> geometry = sampleGeometry(unfolded_.square, unfolded_.map, grid);
         if (!geometry) return geometry.error();
-        Result<codec::Encoder> encoder = encoderOf(unfolded_.square, grid, *geometry, normals_);
+        const double sampleSeconds = watch.lap();
+        FloatImage normals = normals_;
+        std::optional<FitGain> gain;
+        if (fit_ && grid <= EncodeOptions::kLargestFit) {
+            const Result<FitGain> fitted =
+                fitImages(unfolded_.square.surface, measure, unfolded_.square, *geometry, normals);
+            if (!fitted) return fitted.error();
+            gain = *fitted;
+        }
+        const double fitSeconds = watch.lap();
+        Result<codec::Encoder> encoder = encoderOf(unfolded_.square, grid, *geometry, normals);
         if (!encoder) return encoder.error();
-        made = std::make_shared<const Sampled>(
-            Sampled{std::move(*encoder), gimg::seamLength(unfolded_.square, *geometry)});
+        made = std::make_shared<const Sampled>(Sampled{std::move(*encoder),
+                                                       gimg::seamLength(unfolded_.square, *geometry), gain,
+                                                       sampleSeconds, fitSeconds});
         return made;
     }
 
 private:
     const Unfolded unfolded_;
     const FloatImage normals_;
+    const bool fit_;
     std::mutex mutex_;
     std::map<int, std::shared_ptr<const Sampled>> made_;
 };
@@ -337,9 +368,7 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     if (options.normals != 0) normals = sampleNormals(square, map, options.normals);
     if (!normals) return normals.error();
     out.normals = options.normals;
-    auto encoders = std::make_unique<GridEncoders>(std::move(*unfolded), std::move(*normals));
-    const auto first = encoders->at(out.grid);
-    if (!first) return first.error();
+    auto encoders = std::make_unique<GridEncoders>(std::move(*unfolded), std::move(*normals), options.fit);
     out.seconds.sample = watch.lap();
     measured();
     out.seconds.code = watch.lap();
@@ -391,8 +420,9 @@ Result<EncodedMesh> MeshEncoder::encodeAtAmpleGrid(const EncodeGoal& goal) const
 Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal) const
 {
     Stopwatch watch;
-    const auto sampled = prepared_->encoders->at(grid);
+    const auto sampled = prepared_->encoders->at(grid, prepared_->measure);
     if (!sampled) return sampled.error();
+    watch.lap();
     Result<std::vector<uint8_t>> file =
         code((*sampled)->encoder, prepared_->measure, goal, prepared_->progress);
     if (!file) return file.error();
@@ -402,6 +432,9 @@ Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal) cons
     EncodedMesh out = prepared_->report;
     out.grid = grid;
     out.cutLength = (*sampled)->seamLength;
+    out.fit = (*sampled)->fit;
+    out.seconds.sample += (*sampled)->sampleSeconds;
+    out.seconds.fit = (*sampled)->fitSeconds;
     out.file = std::move(*file);
     out.psnr = *psnr;
     if (out.psnr == 0)

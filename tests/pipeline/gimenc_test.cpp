@@ -62,7 +62,7 @@ TEST_F(Gimenc, ReportHasTheDocumentedKeys)
     EXPECT_EQ(json.at("cut").at("nodes"), 2);
     EXPECT_GT(json.at("cut").at("length").get<double>(), 2 * 3.14);
     double sum = 0;
-    for (const char* key : {"read", "cut", "parameterize", "sample", "code"})
+    for (const char* key : {"read", "cut", "parameterize", "sample", "fit", "code"})
         sum += json.at("seconds").at(key).get<double>();
     EXPECT_GE(json.at("seconds").at("total").get<double>(), 0.9 * sum);
     EXPECT_TRUE(json.at("warnings").is_array());
@@ -84,6 +84,21 @@ TEST_F(Gimenc, ParamChoosesTheMapAndTheReportNamesIt)
     }
     EXPECT_EQ(files.size(), 4u);
     EXPECT_EQ(gimenc("--bytes 1000 --param best" + torus + file("torus.gim")).code, 2);
+}
+
+TEST_F(Gimenc, ReportsWhatTheFitIsWorthAndLeavesItOut)
+{
+    const std::string files = mesh("torus.ply", shapes::torus(2, 1, 40, 20)) + file("torus.gim");
+    const auto report = [&](const std::string& options) {
+        const Ended ended = gimenc("--raw float --grid 65 --json - " + options + files);
+        EXPECT_EQ(ended.code, 0) << ended.err;
+        return nlohmann::json::parse(ended.out);
+    };
+    const auto fitted = report(""), plain = report("--no-fit");
+    EXPECT_TRUE(plain.at("fit").is_null());
+    EXPECT_EQ(fitted.at("fit").at("db_before"), plain.at("psnr"));
+    EXPECT_EQ(fitted.at("fit").at("db_after"), fitted.at("psnr"));
+    EXPECT_GT(fitted.at("psnr").get<double>(), plain.at("psnr").get<double>() + 4);
 }
 
 TEST_F(Gimenc, ExitCodesTellRefusedUsageAndUnreachableApart)

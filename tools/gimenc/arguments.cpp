@@ -48,6 +48,8 @@ void addOptions(CLI::App& app, Arguments& a)
         ->check(CLI::IsMember({"12", "float"}));
     target->require_option(0, 1);
     app.add_option("--normals", a.normals, "add a normal image of this many samples a side, 2^k + 1");
+    app.add_flag("--no-fit", a.noFit,
+                 "keep samples on the mesh; else they move to where the triangles between them fit it best");
     app.add_option("--component", a.component, "of several components take the largest")
         ->check(CLI::IsMember({"largest"}));
     app.add_option("--weld", a.weld,
@@ -117,6 +119,7 @@ std::vector<std::string> fileOptions(const Arguments& a)
     if (a.lowest != 0) add("--lowest", std::to_string(a.lowest));
     if (a.layout != "auto") add("--layout", a.layout);
     if (a.normals != 0) add("--normals", std::to_string(a.normals));
+    if (a.noFit) words.push_back("--no-fit");
     if (!a.component.empty()) add("--component", a.component);
     if (a.weld != "auto") add("--weld", a.weld);
     if (a.density != "curvature") add("--density", a.density);
@@ -139,6 +142,7 @@ EncodeOptions encodeOptions(const Arguments& a)
                      : a.layout == "octahedral" ? SquareLayout::Octahedral
                                                 : SquareLayout::Auto;
     options.normals = a.normals;
+    options.fit = !a.noFit;
     options.threads = a.threads;
     options.density = a.density == "even" ? Density::Even : Density::Curvature;
     for (MapKind kind : kMapKinds)

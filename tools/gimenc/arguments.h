@@ -23,6 +23,7 @@ struct Arguments
     std::string density = "curvature";
     std::string weld = "auto";
     std::string param = "stretch";
+    bool noFit = false;
     bool resume = false;
     bool quiet = false;
 };

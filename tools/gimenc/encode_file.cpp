@@ -38,6 +38,12 @@ double secondsSince(std::chrono::steady_clock::time_point start)
     return std::chrono::duration<double>(std::chrono::steady_clock::now() - start).count();
 }
 
+// Where surfaces agree there is no finite PSNR.
+nlohmann::ordered_json finite(double psnr)
+{
+    return std::isfinite(psnr) ? nlohmann::ordered_json(psnr) : nlohmann::ordered_json();
+}
+
 nlohmann::ordered_json report(const EncodedMesh& encoded, double read, double total)
 {
     gim_info info{};
@@ -56,9 +62,12 @@ nlohmann::ordered_json report(const EncodedMesh& encoded, double read, double to
                      {"sideband", info.seam_bytes},
                      {"geometry", info.geometry_bytes},
                      {"normals", info.normal_bytes}};
-    json["psnr"] = nullptr; // where the surfaces agree there is no finite value
-    if (std::isfinite(encoded.psnr)) json["psnr"] = encoded.psnr;
+    json["psnr"] = finite(encoded.psnr);
     json["param"] = mapName(encoded.param);
+    json["fit"] = nullptr;
+    if (encoded.fit)
+        json["fit"] = {{"db_before", finite(encoded.fit->psnrBefore)},
+                       {"db_after", finite(encoded.fit->psnrAfter)}};
     json["stretch_efficiency"] = encoded.stretchEfficiency;
     json["cut"] = {{"nodes", encoded.cutNodes},
                    {"paths", encoded.cutPaths},
@@ -68,6 +77,7 @@ nlohmann::ordered_json report(const EncodedMesh& encoded, double read, double to
                        {"cut", encoded.seconds.cut},
                        {"parameterize", encoded.seconds.parameterize},
                        {"sample", encoded.seconds.sample},
+                       {"fit", encoded.seconds.fit},
                        {"code", encoded.seconds.code},
                        {"total", total}};
     json["warnings"] = encoded.warnings;

@@ -9,6 +9,7 @@
 #include <cstdint>
 #include <functional>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -35,6 +36,8 @@ struct EncodeGoal
 
 struct EncodeOptions : EncodeGoal
 {
+    static constexpr int kLargestFit = 1025; ///< larger grids are not fitted: it would take gigabytes
+
     /// Samples a side, 2^j + 1. 0 chooses: for a number of bytes the grid grows from 129 to 513 as long as a
     /// finer one is worth half a decibel, for a PSNR it is the smallest whose samples hold 6 dB more (1025
     /// where 513 does not reach it), and raw grids have 257. It is never smaller than what the cut needs.
@@ -46,11 +49,18 @@ struct EncodeOptions : EncodeGoal
     EncodeProgress progress;
     MapKind param = MapKind::Stretch; ///< how the surface is mapped to the square
     Density density = Density::Curvature;
+    bool fit = true; ///< move the samples to where the triangles between them fit the mesh, see fitGeometry
+};
+
+/// What the fit is worth: PSNR of the triangles between the samples, before anything is lost in coding.
+struct FitGain
+{
+    double psnrBefore = 0, psnrAfter = 0;
 };
 
 struct EncodeSeconds
 {
-    double cut = 0, parameterize = 0, sample = 0, code = 0;
+    double cut = 0, parameterize = 0, sample = 0, fit = 0, code = 0;
 };
 
 struct EncodedMesh
@@ -67,8 +77,9 @@ struct EncodedMesh
     SquareLayout layout = SquareLayout::Cut; ///< Cut or Octahedral
     int cutNodes = 0;
     int cutPaths = 0;
-    int cutExtrema = 0;   ///< tips that the cut was extended to
-    double cutLength = 0; ///< of the seam and the boundary as sampled, in the mesh's unit
+    int cutExtrema = 0;         ///< tips that the cut was extended to
+    std::optional<FitGain> fit; ///< none: not asked for, or a grid above EncodeOptions::kLargestFit
+    double cutLength = 0;       ///< of the seam and the boundary as sampled, in the mesh's unit
     EncodeSeconds seconds;
     std::vector<std::string> warnings;
 };
