@@ -5,7 +5,7 @@
 #include "gimg/encode.h"
 #include "gimg/mesh_io.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <unistd.h>
 
 #include <cmath>

@@ -8,7 +8,7 @@
 #include "gimg/mesh_io.h"
 #include "gimg/stretch.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 
 #include <algorithm>
 #include <cmath>

@@ -2,7 +2,7 @@
 #include "gimg/mesh_io.h"
 #include "shapes.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <functional>
 #include <iostream>
 #include <map>

@@ -1,6 +1,6 @@
 #include "cli.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/CLI.hpp> // here only: seconds, in whatever includes it
 #include <nlohmann/json.hpp>
 
 #include <charconv>

@@ -9,7 +9,7 @@
 #include <vector>
 
 namespace CLI {
-class App; // <CLI/CLI.hpp> takes seconds to compile: only what builds a command line includes it
+class App; // what builds a command line includes <CLI/App.hpp>; cli.cpp compiles the rest of CLI11
 }
 
 /// What the command-line tools share: exit codes, one-line errors, files and JSON.

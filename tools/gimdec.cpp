@@ -5,7 +5,7 @@
 #include "gimg/image_io.h"
 #include "gimg/mesh_io.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
 #include <chrono>

@@ -1,7 +1,7 @@
 // giminfo: what a .gim file holds.
 #include "cli.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <gim.h>
 #include <nlohmann/json.hpp>
 

@@ -4,7 +4,7 @@
 #include "gimg/mesh_io.h"
 #include "tools/cli.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 #include <unistd.h>
 

@@ -92,6 +92,21 @@ TEST(EncodeTiny, ATetrahedronAndATriangleWork)
     EXPECT_GT(open.psnr, 35);
 }
 
+TEST(EncodeTiny, DecibelsAndNormalsOfATorus)
+{
+    EncodeOptions options = forTarget(EncodeTarget::Psnr, 33);
+    options.psnr = 36;
+    options.normals = 17;
+    const EncodedMesh encoded = encode(shapes::torus(2, 1, 12, 8), options);
+    EXPECT_GE(encoded.psnr, 36);
+    EXPECT_LE(encoded.psnr, 36.5);
+    const Result<DecodedImages> images = decodeImages(encoded.file);
+    ASSERT_TRUE(images.ok());
+    ASSERT_EQ(images->normals.width, 17);
+    const Vec3 normal(images->normals.at(8, 8, 0), images->normals.at(8, 8, 1), images->normals.at(8, 8, 2));
+    EXPECT_NEAR(normal.norm(), 1, 1e-6);
+}
+
 TEST(EncodeOptions, OutOfRangeIsRefused)
 {
     const Mesh mesh = shapes::sphere(1, 4);

@@ -92,11 +92,29 @@ TEST(Unfold, ReachingTheArmsEvensTheSamplesOut)
     EXPECT_GT(unfolded->map.efficiency, 1.5 * plain->efficiency);
 }
 
+TEST(Unfold, TheCutGoesOnToTheFarEndOfALongBody)
+{
+    Mesh body = shapes::sphere(1, 6);
+    for (Vec3& p : body.positions) p[2] *= 6;
+    const UnfoldOptions options{{65, 0, SquareLayout::Cut}};
+    const Result<Unfolded> unfolded = unfold(body, options);
+    ASSERT_TRUE(unfolded.ok()) << unfolded.error().message;
+    EXPECT_GE(unfolded->extrema, 1);
+    const Result<SquareDisk> square = layOutBorder(body, cutToDisk(body), options);
+    const Result<Parameterization> plain = flattenToSquare(*square);
+    ASSERT_TRUE(plain.ok());
+    EXPECT_GT(unfolded->map.efficiency, 2 * plain->efficiency);
+}
+
 TEST(Unfold, ACutThatFitsNoBorderIsNotExtendedIntoAnError)
 {
     // A grid of 5 has 16 units; a jack's extended cut needs more nodes than that on its border.
-    const Result<Unfolded> unfolded = unfold(jack(12), {5, 5});
+    const Mesh mesh = jack(4);
+    const UnfoldOptions options{{5, 5, SquareLayout::Cut}};
+    ASSERT_FALSE(layOutBorder(mesh, cutToDisk(mesh, findExtrema(mesh).vertices), options).ok());
+    const Result<Unfolded> unfolded = unfold(mesh, options);
     ASSERT_TRUE(unfolded.ok()) << unfolded.error().message;
+    EXPECT_EQ(unfolded->extrema, 0);
 }
 
 } // namespace

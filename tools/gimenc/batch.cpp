@@ -7,7 +7,7 @@
 #include "status_line.h"
 #include "summary.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <sched.h>
 
 #include <algorithm>

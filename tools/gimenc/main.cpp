@@ -3,7 +3,7 @@
 #include "batch.h"
 #include "encode_file.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 
 namespace {
 

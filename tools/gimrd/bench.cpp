@@ -12,7 +12,7 @@
 #include "gimg/decode.h"
 #include "gimg/mesh_io.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
 #include <unistd.h>

@@ -6,7 +6,7 @@
 #include "gimg/distance.h"
 #include "gimg/mesh_io.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
 #include <algorithm>

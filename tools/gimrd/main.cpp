@@ -3,7 +3,7 @@
 
 #include "../cli.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 
 #include <vector>
 

@@ -10,7 +10,7 @@
 
 #include "../cli.h"
 
-#include <CLI/CLI.hpp>
+#include <CLI/App.hpp>
 #include <pthread.h>
 #include <unistd.h>
 
