@@ -104,7 +104,7 @@ private:
     const Mesh& mesh_;
 };
 
-// The disk that `unfold` flattens first: the cut reaches the extrema.
+// A disk with the border on the square, whatever layout `unfold` would choose; the cut reaches the extrema.
 Result<SquareDisk> openMesh(const std::string& path)
 {
     const Result<MeshFile> read = readMesh(path, {Weld::Auto, true});
