@@ -25,7 +25,7 @@ std::vector<Ring> boundaryRings(const EditableSurface& surface)
     for (int start = 0; start < surface.halfedgeCount(); ++start) {
         if (surface.twin(start) >= 0 || leaving[surface.tail(start)] < 0) continue;
         Ring& ring = rings.emplace_back();
-        for (int h = start; leaving[surface.tail(h)] >= 0; h = leaving[surface.head(h)]) {
+        for (int h = start; h >= 0; h = leaving[surface.head(h)]) {
             leaving[surface.tail(h)] = -1;
             ring.push_back(h);
         }

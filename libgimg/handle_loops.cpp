@@ -18,7 +18,7 @@ double meanEdgeLength(const EditableSurface& surface)
 } // namespace
 
 HandleLoops::HandleLoops(const EditableSurface& surface, const EdgeClasses& classes)
-    : surface_(surface), classes_(classes), firstRadius_(4 * meanEdgeLength(surface))
+    : surface_(surface), classes_(classes), firstRadius_(4 * meanEdgeLength(surface)), sum_(classes.words())
 {
     grow();
     for (int h = 0; h < surface.halfedgeCount(); ++h)
@@ -127,16 +127,15 @@ std::optional<HandleLoop> HandleLoops::shortestThrough(int root, double radius)
 void HandleLoops::closeLoops(int v, std::optional<int>& closing, double& length)
 {
     const size_t words = classes_.words();
-    HomologyClass sum(words);
     surface_.forEachEdgeAt(v, [&](int h, int w) {
         if (slot_[w] < 0 || !reached_[slot_[w]].settled) return;
         const double through = reached_[slot_[v]].distance + surface_.length(h) + reached_[slot_[w]].distance;
         if (through >= length) return;
         const uint64_t* a = &classOf_[static_cast<size_t>(slot_[v]) * words];
         const uint64_t* b = &classOf_[static_cast<size_t>(slot_[w]) * words];
-        for (size_t i = 0; i < words; ++i) sum[i] = a[i] ^ b[i];
-        classes_.add(h, sum.data());
-        if (std::all_of(sum.begin(), sum.end(), [](uint64_t word) { return word == 0; })) return;
+        for (size_t i = 0; i < words; ++i) sum_[i] = a[i] ^ b[i];
+        classes_.add(h, sum_.data());
+        if (std::all_of(sum_.begin(), sum_.end(), [](uint64_t word) { return word == 0; })) return;
         closing = h;
         length = through;
     });

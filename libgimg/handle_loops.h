@@ -63,6 +63,7 @@ private:
     std::vector<int> touched_;
     std::vector<Reached> reached_;
     std::vector<uint64_t> classOf_; // per slot: of the path from the root
+    HomologyClass sum_;
     Queue front_;
 };
 

@@ -29,15 +29,15 @@ struct HandleRemoval
     std::vector<RemovedHandle> handles; ///< in the order in which they went
 };
 
-/// The longest loop that counts as noise where nothing else is asked for, over the diagonal of the bounding
-/// box.
-inline constexpr double kNoiseHandle = 0.02;
+/// A handle whose loop is at most this long, over the diagonal of the bounding box, counts as noise: 257
+/// samples a side are too few to show it.
+inline constexpr double kNoiseHandle = 0.025;
 
 /// Removes handles, each time the one with the shortest loop: of all closed chains of edges that do not
 /// separate the surface the shortest is cut open, and both sides of the cut are closed by a fan of triangles
 /// around the loop's centre (a loop of three edges by one triangle). The genus falls by one each time; area
 /// grows by the two caps, which lie on each other, so the enclosed volume stays. Boundary loops stay; they
-/// count as closed when it comes to what separates. Old vertices keep their numbers.
+/// count as closed when it comes to what separates. Old vertices keep their order and places.
 /// @param mesh  connected, manifold, oriented
 /// Errors: BadArgument (a negative or undefined limit).
 /// Source: Guskov and Wood 2001, "Topological noise removal"; the search is our own, see docs/topology.md.
