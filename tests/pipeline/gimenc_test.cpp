@@ -121,7 +121,7 @@ TEST_F(Gimenc, SeveralComponentsAreRefusedUnlessTheLargestIsAskedFor)
 
 TEST_F(Gimenc, HandlesAndHolesGoWhereAskedFor)
 {
-    const Mesh surface = shapes::surfaceOfGenus(1, 2, 6);
+    const Mesh surface = shapes::surfaceOfGenus(1, 2, 4);
     const std::string input = mesh("surface.ply", surface), output = file("surface.gim");
     const Ended kept =
         gimenc("--bytes 1500 --grid 33 --max-genus auto --close-holes 0.1% --json -" + input + output);
