@@ -25,8 +25,8 @@ std::vector<bool> treeEdges(const EditableSurface& surface)
         const auto [d, v] = queue.top();
         queue.pop();
         if (d > distance[v]) continue;
-        surface.forEachEdgeAt(v, [&](int h, int w) {
-            const double through = d + surface.length(h);
+        surface.forEachEdgeAt(v, [&, from = d](int h, int w) {
+            const double through = from + surface.length(h);
             if (through >= distance[w]) return;
             distance[w] = through;
             entry[w] = h;

@@ -4,6 +4,7 @@
 #include "editable_surface.h"
 #include "handle_loops.h"
 
+#include <array>
 #include <cassert>
 #include <string>
 
