@@ -69,7 +69,9 @@ Result<EncodedMesh> encodeToPsnr(const MeshEncoder& encoder, EncodeGoal goal, do
 
 Result<EncodedMesh> encodeAgainst(const Mesh& reference, const Mesh& surface, const EncodeOptions& options)
 {
-    const SurfaceMeasure measure(reference);
+    DistanceOptions distance;
+    distance.threads = options.threads;
+    const SurfaceMeasure measure(reference, distance);
     const bool toPsnr = options.target == EncodeTarget::Psnr;
     double limit = 0;
     if (toPsnr) {
