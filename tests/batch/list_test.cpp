@@ -68,6 +68,12 @@ TEST(List, ALinesOwnOptionsWin)
     EXPECT_EQ(own->output, "o.gim");
     EXPECT_THAT(fileOptions(*parseLine({"i.ply", "o.gim", "--weld", "never"}, defaults)),
                 ElementsAre("--bytes", "5000", "--grid", "65", "--weld", "never"));
+    EXPECT_THAT(
+        fileOptions(*parseLine({"i.ply", "o.gim", "--max-genus", "06", "--close-holes", "1.50%"}, defaults)),
+        ElementsAre("--bytes", "5000", "--grid", "65", "--close-holes", "1.5%", "--max-genus", "6"));
+    EXPECT_THAT(
+        fileOptions(*parseLine({"i.ply", "o.gim", "--max-genus", "auto", "--close-holes", "2e-1"}, defaults)),
+        ElementsAre("--bytes", "5000", "--grid", "65", "--close-holes", "0.2", "--max-genus", "auto"));
     EXPECT_THAT(fileOptions(*parseLine({"--raw", "float", "i.ply", "o.gim"}, defaults)),
                 ElementsAre("--raw", "float", "--grid", "65"));
 }

@@ -114,6 +114,8 @@ TEST_F(Gimenc, ExitCodesTellRefusedUsageAndUnreachableApart)
     EXPECT_EQ(gimenc("--bytes 2000 --grid 100" + sphere + out).code, 2);
     EXPECT_EQ(gimenc("--bytes 2000 --threads x" + sphere + out).code, 2);
     EXPECT_EQ(gimenc("--bytes 2000 --normals 65537" + sphere + out).code, 2);
+    for (const char* option : {"--max-genus -1", "--max-genus none", "--close-holes 0", "--close-holes 5%%"})
+        EXPECT_EQ(gimenc("--bytes 2000 " + std::string(option) + sphere + out).code, 2) << option;
     EXPECT_EQ(gimenc("--bytes 2000" + sphere + sphere).code, 2); // onto itself
     EXPECT_EQ(run(GIMDEC_PATH, "/tmp" + file("x.ply")).code, 1); // a folder
     EXPECT_EQ(gimenc("--bytes 10 --grid 65" + sphere + out).code, 3);
@@ -149,6 +151,60 @@ TEST_F(Gimenc, SeveralComponentsAreRefusedUnlessTheLargestIsAskedFor)
     ASSERT_EQ(taken.code, 0) << taken.err;
     EXPECT_EQ(nlohmann::json::parse(taken.out).at("genus"), 1);
     EXPECT_FALSE(nlohmann::json::parse(taken.out).at("warnings").empty());
+}
+
+TEST_F(Gimenc, HandlesAndHolesGoWhereAskedFor)
+{
+    const Mesh surface = shapes::surfaceOfGenus(1, 2, 4);
+    const std::string input = mesh("surface.ply", surface), output = file("surface.gim");
+    const Ended kept =
+        gimenc("--bytes 1500 --grid 33 --max-genus auto --close-holes 0.1% --json -" + input + output);
+    ASSERT_EQ(kept.code, 0) << kept.err;
+    EXPECT_EQ(kept.err, "");
+    const auto before = nlohmann::json::parse(kept.out);
+    EXPECT_EQ(before.at("genus"), 1);
+    EXPECT_EQ(before.at("boundaries"), 2);
+    EXPECT_TRUE(before.at("removed_handles").empty());
+    EXPECT_TRUE(before.at("closed_holes").empty());
+
+    const Ended gone =
+        gimenc("--bytes 1500 --grid 33 --max-genus 0 --close-holes 100% --json -" + input + output);
+    ASSERT_EQ(gone.code, 0) << gone.err;
+    EXPECT_THAT(gone.err, HasSubstr("2 holes closed, 0 of them cracks: loops "));
+    EXPECT_THAT(gone.err, HasSubstr("1 handle removed, genus 1 became 0: loop "));
+    const auto after = nlohmann::json::parse(gone.out);
+    EXPECT_EQ(after.at("genus"), 0);
+    EXPECT_EQ(after.at("boundaries"), 0);
+    ASSERT_EQ(after.at("closed_holes").size(), 2u);
+    for (const auto& hole : after.at("closed_holes")) {
+        EXPECT_GE(hole.at("edges"), 3);
+        EXPECT_EQ(hole.at("zipped"), 0);
+    }
+    ASSERT_EQ(after.at("removed_handles").size(), 1u);
+    const auto& handle = after.at("removed_handles")[0];
+    EXPECT_NEAR(handle.at("length").get<double>(),
+                handle.at("fraction").get<double>() * boundingBoxDiagonal(surface), 1e-6);
+    EXPECT_EQ(handle.at("at").size(), 3u);
+    // PSNR is from the surface as it was read.
+    ASSERT_EQ(run(GIMDEC_PATH, output + file("decoded.obj")).code, 0);
+    const Ended compared = run(GIMRD_PATH, "compare --json" + input + file("decoded.obj"));
+    EXPECT_NEAR(after.at("psnr").get<double>(), nlohmann::json::parse(compared.out).at("psnr").get<double>(),
+                0.02);
+}
+
+TEST_F(Gimenc, PsnrAskedForIsFromTheSurfaceAsRead)
+{
+    Mesh surface = shapes::sphere(1, 10);
+    std::erase_if(surface.faces, [&](const Triangle& f) { return surface.positions[f[0]][2] > 0.985; });
+    const std::string input = mesh("open.ply", surface), output = file("open.gim");
+    const Ended met = gimenc("--psnr 48 --grid 65 --close-holes 200% --json -" + input + output);
+    ASSERT_EQ(met.code, 0) << met.err;
+    EXPECT_GE(nlohmann::json::parse(met.out).at("psnr"), 48);
+    EXPECT_LE(nlohmann::json::parse(met.out).at("psnr"), 48.5);
+    const Ended unmet = gimenc("--psnr 60 --grid 65 --close-holes 200%" + input + output);
+    EXPECT_EQ(unmet.code, 3);
+    EXPECT_THAT(unmet.err,
+                HasSubstr("60.00 dB cannot be reached: without its holes and handles the surface is 5"));
 }
 
 TEST_F(Gimenc, WhatItWritesDecodesToTheSurfaceItMeasured)

@@ -22,7 +22,54 @@ std::vector<std::string> mapNames()
     return names;
 }
 
+// "auto" or a number.
+bool parseMaxGenus(const std::string& text, Arguments& a)
+{
+    a.maxGenus.reset();
+    a.removeNoise = text == "auto";
+    if (a.removeNoise) return true;
+    int genus = 0;
+    const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), genus);
+    if (error != std::errc() || end != text.data() + text.size() || genus < 0) return false;
+    a.maxGenus = genus;
+    return true;
+}
+
+void addTopologyOptions(CLI::App& app, Arguments& a)
+{
+    app.add_option_function<std::string>(
+           "--max-genus",
+           [&a](const std::string& text) {
+               if (!parseMaxGenus(text, a))
+                   throw CLI::ValidationError("--max-genus", text + " is neither a number >= 0 nor auto");
+           },
+           "remove handles, smallest first, down to this genus; auto: those that are noise")
+        ->type_name("G|auto");
+    app.add_option_function<std::string>(
+           "--close-holes",
+           [&a](const std::string& text) {
+               a.closeHoles = MeshLength::parse(text);
+               if (!a.closeHoles)
+                   throw CLI::ValidationError("--close-holes", text + " is not a positive length or N%");
+           },
+           "close boundary loops up to this long, in the mesh's unit or % of the bounding box's diagonal")
+        ->type_name("LENGTH|N%");
+}
+
 } // namespace
+
+std::string MeshLength::text() const { return shortest(number) + (percent ? "%" : ""); }
+
+std::optional<MeshLength> MeshLength::parse(const std::string& text)
+{
+    MeshLength length;
+    length.percent = text.ends_with('%');
+    const char* const last = text.data() + text.size() - (length.percent ? 1 : 0);
+    const auto [end, error] = std::from_chars(text.data(), last, length.number);
+    if (error != std::errc() || end != last || !(length.number > 0) || !std::isfinite(length.number))
+        return std::nullopt;
+    return length;
+}
 
 void addOptions(CLI::App& app, Arguments& a)
 {
@@ -61,6 +108,7 @@ void addOptions(CLI::App& app, Arguments& a)
                    "map to the square: stretch (even samples), or linear and fast, but shrinking what sticks "
                    "out: mvc (mean values), tutte, conformal (harmonic)")
         ->check(CLI::IsMember(mapNames()));
+    addTopologyOptions(app, a);
     app.add_option("--threads", a.threads,
                    "threads to use (default: one a core); the file does not depend on it")
         ->check(positive);
@@ -124,6 +172,9 @@ std::vector<std::string> fileOptions(const Arguments& a)
     if (a.weld != "auto") add("--weld", a.weld);
     if (a.density != "curvature") add("--density", a.density);
     if (a.param != "stretch") add("--param", a.param);
+    if (a.closeHoles) add("--close-holes", a.closeHoles->text());
+    if (a.maxGenus) add("--max-genus", std::to_string(*a.maxGenus));
+    if (a.removeNoise) add("--max-genus", "auto");
     return words;
 }
 

@@ -11,6 +11,18 @@
 
 namespace gimg::gimenc {
 
+/// A length on the command line: in the mesh's unit, or in percent of the diagonal of its bounding box.
+struct MeshLength
+{
+    double number = 0;
+    bool percent = false;
+
+    double of(double diagonal) const { return percent ? number / 100 * diagonal : number; }
+    std::string text() const; ///< the shortest that reads back the same
+    /// "0.5", "2%"; positive and finite.
+    static std::optional<MeshLength> parse(const std::string& text);
+};
+
 /// One file to make: from what, and how.
 struct Arguments
 {
@@ -24,6 +36,9 @@ struct Arguments
     std::string weld = "auto";
     std::string param = "stretch";
     bool noFit = false;
+    std::optional<int> maxGenus;
+    bool removeNoise = false; ///< --max-genus auto
+    std::optional<MeshLength> closeHoles;
     bool resume = false;
     bool quiet = false;
 };

@@ -1,7 +1,9 @@
 #include "encode_file.h"
 
 #include "../whole_file.h"
+#include "encode_against.h"
 #include "record.h"
+#include "simplified_surface.h"
 #include "status_line.h"
 
 #include <gim.h>
@@ -44,7 +46,30 @@ nlohmann::ordered_json finite(double psnr)
     return std::isfinite(psnr) ? nlohmann::ordered_json(psnr) : nlohmann::ordered_json();
 }
 
-nlohmann::ordered_json report(const EncodedMesh& encoded, double read, double total)
+nlohmann::ordered_json loop(double length, double fraction, int edges, const Vec3& at)
+{
+    return {{"length", length}, {"fraction", fraction}, {"edges", edges}, {"at", {at[0], at[1], at[2]}}};
+}
+
+void addLoops(nlohmann::ordered_json& json, const SimplifiedSurface& surface)
+{
+    auto& holes = json["closed_holes"] = nlohmann::ordered_json::array();
+    for (const ClosedHole& hole : surface.holes) {
+        holes.push_back(loop(hole.length, hole.fraction, hole.edges, hole.at));
+        holes.back()["zipped"] = hole.zipped;
+    }
+    auto& handles = json["removed_handles"] = nlohmann::ordered_json::array();
+    for (const RemovedHandle& handle : surface.handles)
+        handles.push_back(loop(handle.length, handle.fraction, handle.edges, handle.at));
+}
+
+struct Seconds
+{
+    double read = 0, topology = 0, total = 0; ///< the others are EncodedMesh's
+};
+
+nlohmann::ordered_json report(const EncodedMesh& encoded, const SimplifiedSurface& simplified,
+                              const Seconds& seconds)
 {
     gim_info info{};
     info.size = sizeof info;
@@ -73,14 +98,16 @@ nlohmann::ordered_json report(const EncodedMesh& encoded, double read, double to
                    {"paths", encoded.cutPaths},
                    {"extrema", encoded.cutExtrema},
                    {"length", encoded.cutLength}};
-    json["seconds"] = {{"read", read},
+    json["seconds"] = {{"read", seconds.read},
+                       {"topology", seconds.topology},
                        {"cut", encoded.seconds.cut},
                        {"parameterize", encoded.seconds.parameterize},
                        {"sample", encoded.seconds.sample},
                        {"fit", encoded.seconds.fit},
                        {"code", encoded.seconds.code},
-                       {"total", total}};
+                       {"total", seconds.total}};
     json["warnings"] = encoded.warnings;
+    addLoops(json, simplified);
     return json;
 }
 
@@ -100,17 +127,29 @@ Failure make(const Arguments& a, Made& made)
         return {cli::Refused,
                 read.error().message + (several ? "; --component largest takes the largest" : "")};
     }
-    const double readSeconds = secondsSince(start);
+    Seconds seconds;
+    seconds.read = secondsSince(start);
 
+    SimplifiedSurface simplified;
+    if (asksForSimplifying(a)) {
+        show("topology", 0);
+        Result<SimplifiedSurface> result = simplifiedSurface(read->mesh, a);
+        if (!result) return {exitFor(result.error().kind), a.input + ": " + result.error().message};
+        simplified = std::move(*result);
+        seconds.topology = secondsSince(start) - seconds.read;
+    }
     EncodeOptions options = encodeOptions(a);
     options.progress = show;
-    Result<EncodedMesh> encoded = encodeMesh(read->mesh, options);
+    Result<EncodedMesh> encoded = simplified.changed() ? encodeAgainst(read->mesh, simplified.mesh, options)
+                                                       : encodeMesh(read->mesh, options);
     if (!encoded) return {exitFor(encoded.error().kind), a.input + ": " + encoded.error().message};
     std::vector<std::string> notes = warnings(read->report);
-    notes.insert(notes.end(), encoded->warnings.begin(), encoded->warnings.end());
+    for (const auto* more : {&simplified.notes, &encoded->warnings})
+        notes.insert(notes.end(), more->begin(), more->end());
     encoded->warnings = std::move(notes);
     made.encoded = std::move(*encoded);
-    made.report = report(made.encoded, readSeconds, secondsSince(start));
+    seconds.total = secondsSince(start);
+    made.report = report(made.encoded, simplified, seconds);
     return {};
 }
 
