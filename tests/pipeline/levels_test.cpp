@@ -21,6 +21,7 @@ TEST_P(EveryLevel, HasTheTopologyOfTheInput)
     const Mesh mesh = shapes::surfaceOfGenus(genus, loops, 6);
     EncodeOptions options;
     options.bytes = 4000;
+    options.grid = BorderOptions::kDefaultGrid;
     const Result<EncodedMesh> encoded = encodeMesh(mesh, options);
     ASSERT_TRUE(encoded.ok()) << encoded.error().message;
     EXPECT_EQ(encoded->topology.genus, genus);
