@@ -1,227 +1,16 @@
 #include "gimg/border.h"
 
-#include "codec/seam.h"
+#include "border_layout.h"
 
 #include <algorithm>
 #include <cmath>
-#include <map>
-#include <numeric>
-#include <optional>
 
 namespace gimg {
 namespace {
 
-constexpr int kDefaultLowest = 33;
 constexpr int kLargestGrid = BorderOptions::kLargestGrid;
 
 bool isGridSize(int n) { return n >= 3 && n <= kLargestGrid && ((n - 1) & (n - 2)) == 0; }
-
-// ---- integer lengths -------------------------------------------------------------------------------------
-
-struct PathNeeds
-{
-    double target = 0;    // share of the perimeter in lowest-grid units
-    int minimum = 1;      // shortest length that keeps the seam a simplicial complex
-    int multiplicity = 2; // sides of the opened border that carry the path: 2 for mates, 1 for boundaries
-};
-
-// A loop needs three edges, and of several paths between the same two nodes only one may be a single edge.
-std::vector<int> minimalLengths(const CutGraph& cut)
-{
-    std::map<std::pair<int, int>, int> parallel;
-    std::vector<int> minimum;
-    for (const CutPath& path : cut.paths) {
-        const auto [low, high] = std::minmax(path.vertices.front(), path.vertices.back());
-        const bool loop = low == high;
-        minimum.push_back(loop ? 3 : parallel[{low, high}]++ == 0 ? 1 : 2);
-    }
-    return minimum;
-}
-
-// Rounds the targets to integers whose sum over both mates is the perimeter; the residual goes to the paths
-// that rounding treated worst, one unit (on both mates) at a time.
-std::optional<std::vector<int>> allocate(const std::vector<PathNeeds>& needs, int perimeter)
-{
-    std::vector<int> length;
-    int residual = perimeter;
-    for (const PathNeeds& need : needs) {
-        length.push_back(std::max(need.minimum, static_cast<int>(std::lround(need.target))));
-        residual -= need.multiplicity * length.back();
-    }
-    while (residual < 0) {
-        int chosen = -1;
-        double worst = -1e300;
-        for (size_t p = 0; p < needs.size(); ++p) {
-            const double excess = length[p] - needs[p].target;
-            if (length[p] > needs[p].minimum && excess > worst) worst = excess, chosen = static_cast<int>(p);
-        }
-        if (chosen < 0) return std::nullopt;
-        --length[chosen];
-        residual += needs[chosen].multiplicity;
-    }
-    while (residual > 0) {
-        int chosen = -1;
-        double worst = -1e300;
-        for (size_t p = 0; p < needs.size(); ++p) {
-            const double lack = needs[p].target - length[p];
-            if (needs[p].multiplicity <= residual && lack > worst) worst = lack, chosen = static_cast<int>(p);
-        }
-        if (chosen < 0) return std::nullopt;
-        ++length[chosen];
-        residual -= needs[chosen].multiplicity;
-    }
-    return length;
-}
-
-// ---- the layout search -----------------------------------------------------------------------------------
-
-struct Layout
-{
-    int lowest = 0;
-    int start = 0;
-    std::vector<int> pathLength;
-};
-
-std::vector<gim_side> seamWord(const std::vector<DiskSide>& sides, const CutGraph& cut,
-                               const std::vector<int>& pathLength)
-{
-    std::vector<int> label(cut.paths.size(), -1);
-    int labels = 0;
-    std::vector<gim_side> word;
-    for (const DiskSide& side : sides) {
-        const bool seen = label[side.path] >= 0;
-        if (!seen) label[side.path] = labels++;
-        gim_side out{};
-        out.path = static_cast<uint32_t>(label[side.path]);
-        out.length = static_cast<uint32_t>(pathLength[side.path]);
-        out.kind = cut.paths[side.path].boundary ? GIM_SIDE_BOUNDARY : seen ? GIM_SIDE_MATE : GIM_SIDE_FIRST;
-        word.push_back(out);
-    }
-    return word;
-}
-
-// The valence of every cut-node in the cut: how many path ends meet there.
-std::map<int, int> nodeValences(const CutGraph& cut)
-{
-    std::map<int, int> valence;
-    for (const CutPath& path : cut.paths) {
-        ++valence[path.vertices.front()];
-        ++valence[path.vertices.back()];
-    }
-    return valence;
-}
-
-// Border positions, relative to the first side, where cut-nodes of valence 1 lie.
-std::vector<int> tipPositions(const DiskMesh& disk, const CutGraph& cut, const std::vector<int>& pathLength)
-{
-    const std::map<int, int> valence = nodeValences(cut);
-    std::vector<int> tips;
-    int position = 0;
-    for (const DiskSide& side : disk.sides) {
-        if (valence.at(disk.origin[side.vertices.front()]) == 1) tips.push_back(position);
-        position += pathLength[side.path];
-    }
-    return tips;
-}
-
-// Rotations of the border, the best first: tips stay as far from the corners as they can (at a corner the
-// geometry is poor, next to one the seam stops being simplicial).
-std::vector<int> rotationsBestFirst(const std::vector<int>& tips, int lowest)
-{
-    const int side = lowest - 1;
-    std::vector<std::pair<int, int>> scored;
-    for (int start = 0; start < 4 * side; ++start) {
-        int clearance = side;
-        for (int tip : tips) {
-            const int along = (start + tip) % side;
-            clearance = std::min({clearance, along, side - along});
-        }
-        if (tips.empty() || clearance > 0) scored.push_back({-clearance, start});
-    }
-    std::stable_sort(scored.begin(), scored.end(),
-                     [](const auto& a, const auto& b) { return a.first < b.first; });
-    std::vector<int> starts;
-    for (const auto& entry : scored) starts.push_back(entry.second);
-    return starts;
-}
-
-std::optional<Layout> layoutAt(int lowest, const CutGraph& cut, const DiskMesh& disk,
-                               std::vector<PathNeeds> needs, double totalLength, int slack)
-{
-    const int perimeter = 4 * (lowest - 1);
-    int minimalPerimeter = 0;
-    for (PathNeeds& need : needs) {
-        need.target *= perimeter / totalLength;
-        minimalPerimeter += need.multiplicity * need.minimum;
-    }
-    if (minimalPerimeter * slack > perimeter) return std::nullopt;
-    const std::optional<std::vector<int>> length = allocate(needs, perimeter);
-    if (!length) return std::nullopt;
-    const std::vector<gim_side> word = seamWord(disk.sides, cut, *length);
-    for (int start : rotationsBestFirst(tipPositions(disk, cut, *length), lowest))
-        if (codec::seamIsSimplicial(word.data(), static_cast<uint32_t>(word.size()),
-                                    static_cast<uint32_t>(start), static_cast<uint32_t>(lowest),
-                                    static_cast<uint32_t>(lowest)))
-            return Layout{lowest, start, *length};
-    return std::nullopt;
-}
-
-// The star's centre at the corners; nothing if the cut is no star of four paths.
-std::optional<Layout> octahedralLayoutAt(int lowest, const CutGraph& cut, const DiskMesh& disk)
-{
-    const int side = lowest - 1;
-    if (cut.paths.size() != 4 || disk.sides.size() != 8 || side < 2) return std::nullopt;
-    for (const auto& [node, valence] : nodeValences(cut))
-        if (valence != 1 && valence != 4) return std::nullopt;
-    const int first = disk.origin[disk.sides[0].vertices.front()];
-    const Layout layout{lowest, nodeValences(cut).at(first) == 4 ? 0 : side / 2,
-                        std::vector<int>(4, side / 2)};
-    const std::vector<gim_side> word = seamWord(disk.sides, cut, layout.pathLength);
-    if (!codec::seamIsSimplicial(word.data(), static_cast<uint32_t>(word.size()),
-                                 static_cast<uint32_t>(layout.start), static_cast<uint32_t>(lowest),
-                                 static_cast<uint32_t>(lowest)))
-        return std::nullopt;
-    return layout;
-}
-
-Error doesNotFit(const CutGraph& cut, const char* what, int size)
-{
-    const std::string paths = cut.paths.size() == 1 ? " path" : " paths";
-    return {ErrorKind::TargetUnreachable, "the cut has " + std::to_string(cut.paths.size()) + paths +
-                                              ", too much for " + what + " " + std::to_string(size) +
-                                              "; use a larger one"};
-}
-
-// The asked lowest level, or the smallest from the default on; preferably one whose border is at least twice
-// as long as the cut needs, so that lengths can follow the surface.
-Result<Layout> findLayout(const CutGraph& cut, const DiskMesh& disk, const Mesh& mesh, int grid, int asked,
-                          SquareLayout kind)
-{
-    const int first = std::min(kDefaultLowest, std::max(3, (grid - 1) / 4 + 1));
-    if (kind == SquareLayout::Octahedral) {
-        if (const auto layout = octahedralLayoutAt(asked > 0 ? asked : first, cut, disk)) return *layout;
-        return Error{
-            ErrorKind::TargetUnreachable,
-            "the cut is no star of four paths, or the lowest level is too small: no octahedral layout"};
-    }
-    const std::vector<int> minimum = minimalLengths(cut);
-    std::vector<PathNeeds> needs(cut.paths.size());
-    double total = 0;
-    for (size_t p = 0; p < needs.size(); ++p) {
-        needs[p].target = cutLength(mesh, {{cut.paths[p]}});
-        needs[p].minimum = minimum[p];
-        needs[p].multiplicity = cut.paths[p].boundary ? 1 : 2;
-        total += needs[p].multiplicity * needs[p].target;
-    }
-    if (asked > 0) {
-        if (const auto layout = layoutAt(asked, cut, disk, needs, total, 1)) return *layout;
-        return doesNotFit(cut, "a lowest level of", asked);
-    }
-    for (int slack : {2, 1})
-        for (int lowest = first; lowest <= grid; lowest = 2 * lowest - 1)
-            if (const auto layout = layoutAt(lowest, cut, disk, needs, total, slack)) return *layout;
-    return doesNotFit(cut, "a grid of", grid);
-}
 
 // ---- edges across the corners ----------------------------------------------------------------------------
 
@@ -365,9 +154,26 @@ Status placeOnSquare(SquareDisk& square)
     return Done{};
 }
 
+Status checkLayout(const CutGraph& cut, const BorderLayout& layout, int grid)
+{
+    const auto refuse = [](const char* why) { return Error{ErrorKind::BadArgument, why}; };
+    if (!isGridSize(grid) || !isGridSize(layout.lowest) || layout.lowest > grid)
+        return refuse("grid or lowest level of the layout is not 2^j + 1, or the lowest is larger");
+    if (layout.pathLength.size() != cut.paths.size()) return refuse("not one length a path of the cut");
+    const int perimeter = 4 * (layout.lowest - 1);
+    if (layout.start < 0 || layout.start >= perimeter) return refuse("the layout starts off the border");
+    int64_t total = 0;
+    for (size_t p = 0; p < cut.paths.size(); ++p) {
+        if (layout.pathLength[p] < 1) return refuse("a path of the layout has no length");
+        total += int64_t{layout.pathLength[p]} * (cut.paths[p].boundary ? 1 : 2);
+    }
+    if (total != perimeter) return refuse("the layout's lengths do not add up to the border");
+    return Done{};
+}
+
 } // namespace
 
-std::vector<gim_side> SquareDisk::seam() const { return seamWord(disk.sides, cut, pathLength); }
+std::vector<gim_side> SquareDisk::seam() const { return seamWord(disk, cut, pathLength); }
 
 Result<SquareDisk> layOutBorder(const Mesh& mesh, const CutGraph& cut, const BorderOptions& options)
 {
@@ -386,20 +192,30 @@ Result<SquareDisk> layOutBorder(const Mesh& mesh, const CutGraph& cut, const Bor
     if (!disk) return disk.error();
     SquareDisk square;
     square.grid = options.grid;
-    Result<Layout> layout = Error{ErrorKind::TargetUnreachable, ""};
+    Result<BorderLayout> layout = Error{ErrorKind::TargetUnreachable, ""};
     for (int grid = options.grid != 0 ? options.grid : std::max(BorderOptions::kDefaultGrid, options.lowest);
          grid <= kLargestGrid && !layout.ok(); grid = 2 * grid - 1) {
-        layout = findLayout(cut, *disk, mesh, grid, options.lowest, options.layout);
+        layout = proportionalLayout(cut, *disk, mesh, grid, options.lowest, options.layout);
         square.grid = grid;
         if (options.grid != 0) break;
     }
     if (!layout) return layout.error();
 
+    return layOutBorder(mesh, cut, *layout, square.grid);
+}
+
+Result<SquareDisk> layOutBorder(const Mesh& mesh, const CutGraph& cut, const BorderLayout& layout, int grid)
+{
+    if (const Status fits = checkLayout(cut, layout, grid); !fits) return fits.error();
+    Result<DiskMesh> disk = openAlong(mesh, cut);
+    if (!disk) return disk.error();
+    SquareDisk square;
+    square.grid = grid;
     square.surface = mesh;
     square.cut = cut;
-    square.lowest = layout->lowest;
-    square.start = layout->start;
-    square.pathLength = layout->pathLength;
+    square.lowest = layout.lowest;
+    square.start = layout.start;
+    square.pathLength = layout.pathLength;
     const double smallestEdge = 1e-7 * boundingBoxDiagonal(mesh);
     for (size_t p = 0; p < cut.paths.size(); ++p)
         square.pathParameter.push_back(arcParameters(mesh, cut.paths[p], square.pathLength[p], smallestEdge));

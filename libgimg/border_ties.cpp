@@ -6,12 +6,6 @@
 namespace gimg {
 namespace {
 
-Vec2 sideDirection(int edge)
-{
-    constexpr int kX[4] = {1, 0, -1, 0}, kY[4] = {0, 1, 0, -1};
-    return Vec2(kX[edge], kY[edge]);
-}
-
 Vec2 sideCorner(int edge) { return Vec2(edge == 1 || edge == 2 ? 1 : 0, edge >= 2 ? 1 : 0); }
 
 // Where a disk side lies on the square's border: position of its begin, in lowest-grid units.
@@ -43,9 +37,16 @@ struct Tie
 {
     int to;
     GridMotion motion; // position of `to` from that of the vertex
+    int path, edge;    // the path that ties them; the square's side that `to` is on there
 };
 
 } // namespace
+
+Vec2 sideDirection(int edge)
+{
+    constexpr int kX[4] = {1, 0, -1, 0}, kY[4] = {0, 1, 0, -1};
+    return Vec2(kX[edge], kY[edge]);
+}
 
 Vec2 GridMotion::turned(const Vec2& p) const
 {
@@ -103,13 +104,15 @@ BorderTies borderTies(const SquareDisk& square)
         const std::vector<int>& b = backward[p].side->vertices;
         const size_t last = a.size() - 1;
         for (size_t i = 0; i < last; ++i) {
-            const GridMotion there =
-                towardsMate(forward[p], backward[p], square.pathLength[p], 0.5 * (u[i] + u[i + 1]), side);
+            const double middle = 0.5 * (u[i] + u[i + 1]);
+            const GridMotion there = towardsMate(forward[p], backward[p], square.pathLength[p], middle, side);
+            const int edge = squareSideAt(forward[p].begin + middle, side);
+            const int mateEdge = squareSideAt(backward[p].begin + square.pathLength[p] - middle, side);
             ties.across[he.outgoing(a[i])] = there.inverse();
             ties.across[he.outgoing(b[last - i - 1])] = there;
             for (size_t k : {i, i + 1}) {
-                tied[a[k]].push_back({b[last - k], there});
-                tied[b[last - k]].push_back({a[k], there.inverse()});
+                tied[a[k]].push_back({b[last - k], there, static_cast<int>(p), mateEdge});
+                tied[b[last - k]].push_back({a[k], there.inverse(), static_cast<int>(p), edge});
             }
         }
     }
@@ -121,6 +124,7 @@ BorderTies borderTies(const SquareDisk& square)
         if (square.squareSides[v] == 0 || seen[v]) continue;
         seen[v] = true;
         std::vector<int> copies = {v};
+        ties.copies.push_back({v, -1, -1, -1});
         int quarters = 0;
         bool boundary = false, node = false;
         for (size_t i = 0; i < copies.size(); ++i) {
@@ -134,6 +138,7 @@ BorderTies borderTies(const SquareDisk& square)
                 ties.leader[tie.to] = v;
                 ties.motion[tie.to] = tie.motion * ties.motion[w];
                 copies.push_back(tie.to);
+                ties.copies.push_back({tie.to, w, tie.path, tie.edge});
             }
         }
         if (node && leaderOfFirstNode < 0) leaderOfFirstNode = v;
@@ -146,7 +151,10 @@ BorderTies borderTies(const SquareDisk& square)
         }
         anyFixed = anyFixed || !ties.free[v][0] || !ties.free[v][1];
     }
-    if (!anyFixed && leaderOfFirstNode >= 0) ties.free[leaderOfFirstNode] = {false, false};
+    if (!anyFixed && leaderOfFirstNode >= 0) {
+        ties.free[leaderOfFirstNode] = {false, false};
+        ties.anchor = leaderOfFirstNode;
+    }
     return ties;
 }
 

@@ -37,7 +37,22 @@ struct BorderTies
     /// Per halfedge of the disk (and of the surface): the motion from the coordinates of the face across the
     /// edge to those of this face; the identity off the seam.
     std::vector<GridMotion> across;
+
+    /// All border vertices, each after the copy it was reached from.
+    struct Copy
+    {
+        int vertex;
+        int parent; ///< -1 for leaders
+        int path;   ///< the cut-path that ties it to the parent
+        int edge;   ///< the square's side, 0 to 3 from the bottom counter-clockwise, that it is on along that
+                    ///< path
+    };
+    std::vector<Copy> copies;
+    int anchor = -1; ///< the leader that is held although it sits at no cone point, since something has to be
 };
+
+/// Of the square's side `edge`, counter-clockwise.
+Vec2 sideDirection(int edge);
 
 BorderTies borderTies(const SquareDisk& square);
 

@@ -202,19 +202,34 @@ Result<codec::Encoder> encoderOf(const SquareDisk& square, int grid, const Float
     return std::move(std::get<codec::Encoder>(encoder));
 }
 
-// What an unfolding is worth: the PSNR of a small file. (That of the bare grid says little about it: seams
-// cost bytes, and a few dB either way.) -1 if there is no such file.
-double codedPsnr(const Unfolded& unfolded, const SurfaceMeasure& measure)
+// The PSNR of what `encode` makes of an unfolding; -1 if there is no such file.
+template <class Encode>
+double codedPsnr(const Unfolded& unfolded, const SurfaceMeasure& measure, Encode encode)
 {
-    constexpr size_t kBytes = 6000;
     const Result<FloatImage> geometry = sampleGeometry(unfolded.square, unfolded.map, unfolded.square.grid);
     if (!geometry) return -1;
     const Result<codec::Encoder> encoder = encoderOf(unfolded.square, unfolded.square.grid, *geometry, {});
     if (!encoder) return -1;
-    const Result<std::vector<uint8_t>> file = fileOf(encoder->encodeToBytes(kBytes));
+    const Result<std::vector<uint8_t>> file = fileOf(encode(*encoder));
     if (!file) return -1;
     const Result<double> psnr = decodedPsnr(*file, measure);
     return psnr ? *psnr : -1;
+}
+
+// What an unfolding is worth. (The bare grid says little about it: seams cost bytes, and a few dB either
+// way.)
+double smallFilePsnr(const Unfolded& unfolded, const SurfaceMeasure& measure)
+{
+    return codedPsnr(unfolded, measure,
+                     [](const codec::Encoder& encoder) { return encoder.encodeToBytes(6000); });
+}
+
+double barePsnr(const Unfolded& unfolded, const SurfaceMeasure& measure)
+{
+    codec::Settings settings;
+    settings.coding = GIM_CODING_FLOAT;
+    return codedPsnr(unfolded, measure,
+                     [&](const codec::Encoder& encoder) { return encoder.encode(settings); });
 }
 
 Result<FitGain> fitImages(const Mesh& mesh, const SurfaceMeasure& measure, const SquareDisk& square,
@@ -340,13 +355,14 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
         return measure ? *measure : measure.emplace(mesh);
     };
     double cutSeconds = 0;
-    Result<Unfolded> unfolded = unfold(
-        mesh, {{options.grid, options.lowest, options.layout}, options.param, options.density},
-        [&](const Unfolded& candidate) { return codedPsnr(candidate, measured()); },
-        [&](const char* name, double fraction) {
-            if (cutSeconds == 0 && std::string_view(name) != "cut") cutSeconds = watch.lap();
-            stage(name, fraction);
-        });
+    Result<Unfolded> unfolded =
+        unfold(mesh, {{options.grid, options.lowest, options.layout}, options.param, options.density},
+               {[&](const Unfolded& candidate) { return smallFilePsnr(candidate, measured()); },
+                [&](const Unfolded& candidate) { return barePsnr(candidate, measured()); }},
+               [&](const char* name, double fraction) {
+                   if (cutSeconds == 0 && std::string_view(name) != "cut") cutSeconds = watch.lap();
+                   stage(name, fraction);
+               });
     if (!unfolded) return unfolded.error();
     const auto& [cut, layout, extrema, square, map] = *unfolded;
     out.cutNodes = cut.nodeCount();

@@ -1,5 +1,6 @@
 #include "gimg/extrema.h"
 
+#include "curvature_importance.h"
 #include "gimg/cut.h"
 #include "gimg/stretch.h"
 #include "hierarchy.h"
@@ -15,13 +16,14 @@ namespace {
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 constexpr double kKept = 0.95; // of the energy; smaller gains are within what another layout would change
 
-double flattenedEnergy(const Mesh& mesh, const CutGraph& cut, SquareLayout layout)
+double flattenedEnergy(const Mesh& mesh, const CutGraph& cut, SquareLayout layout, FlattenEffort effort)
 {
     BorderOptions options;
     options.layout = layout;
     const Result<SquareDisk> square = layOutBorder(mesh, cut, options);
     if (!square) return kInfinity;
-    const Result<Parameterization> map = flattenToSquare(*square);
+    const Result<Parameterization> map =
+        flattenToSquare(*square, curvatureImportance(square->surface, square->grid), {}, effort);
     return map ? quarticStretchEnergy(square->disk.mesh, map->st) : kInfinity;
 }
 
@@ -99,7 +101,7 @@ Extrema findExtrema(const SimplifiedMesh& simplified, const ExtremaOptions& opti
     const FarthestVertex farthest(coarse);
     Extrema found;
     CutGraph cut = cutToDisk(coarse);
-    found.energyWithout = found.energyWith = flattenedEnergy(coarse, cut, SquareLayout::Cut);
+    found.energyWithout = found.energyWith = flattenedEnergy(coarse, cut, SquareLayout::Cut, options.effort);
     std::vector<int> failed;
     double tried = 0;
     for (int rejections = 0; rejections < options.rejections; ++tried) {
@@ -109,7 +111,7 @@ Extrema findExtrema(const SimplifiedMesh& simplified, const ExtremaOptions& opti
         if (candidate < 0) break;
         found.vertices.push_back(candidate);
         CutGraph extended = cutToDisk(coarse, found.vertices);
-        const double energy = flattenedEnergy(coarse, extended, SquareLayout::Cut);
+        const double energy = flattenedEnergy(coarse, extended, SquareLayout::Cut, options.effort);
         if (energy < kKept * found.energyWith) {
             found.energyWith = energy;
             cut = std::move(extended);
@@ -135,7 +137,8 @@ StarTips findStarTips(const SimplifiedMesh& simplified)
     for (size_t last = 3; last < tips.size() && tips[last] >= 0; ++last) {
         const std::vector<int> four = {tips[0], tips[1], tips[2], tips[last]};
         const CutGraph star = starCut(simplified.mesh, four);
-        const double energy = flattenedEnergy(simplified.mesh, star, SquareLayout::Octahedral);
+        const double energy =
+            flattenedEnergy(simplified.mesh, star, SquareLayout::Octahedral, FlattenEffort::Full);
         if (!(energy < best.energy)) continue;
         best = {four, energy};
     }

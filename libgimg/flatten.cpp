@@ -212,18 +212,24 @@ Status startCoarsest(Level& level)
 
 Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progress& progress, Density density)
 {
-    constexpr DescentOptions kFirstDescent{50, 1e-4}, kReleaseDescent{200, 1e-4}, kDescent{30, 1e-3},
-        kLastDescent{12, 1e-3};
+    if (density == Density::Even) return flattenToSquare(square, std::vector<double>(), progress);
+    return flattenToSquare(square, curvatureImportance(square.surface, square.grid), progress);
+}
+
+Result<Parameterization> flattenToSquare(const SquareDisk& square, const std::vector<double>& onSurface,
+                                         const Progress& progress, FlattenEffort effort)
+{
+    const bool trial = effort == FlattenEffort::Trial;
+    constexpr DescentOptions kFirstDescent{50, 1e-4}, kLastDescent{12, 1e-3};
+    const DescentOptions kReleaseDescent{200, trial ? 3e-3 : 1e-4}, kDescent{trial ? 4 : 30, 1e-3};
     // From so many vertices on the seam may slide: fewer do not tell where to.
     constexpr int kReleased = 500;
     const BorderTies ties = borderTies(square);
     bool released = false;
     const Mesh& disk = square.disk.mesh;
     std::vector<double> importance;
-    if (density == Density::Curvature) {
-        const std::vector<double> onSurface = curvatureImportance(square.surface, square.grid);
+    if (!onSurface.empty())
         for (int v : square.disk.origin) importance.push_back(onSurface[v]);
-    }
     Parameterization result;
     result.st = square.borderPosition;
     std::optional<Hierarchy> hierarchy(std::in_place, disk, square.squareSides);

@@ -2,6 +2,7 @@
 
 #include "gimg/extrema.h"
 #include "gimg/stretch.h"
+#include "layout_search.h"
 
 #include <algorithm>
 #include <cmath>
@@ -11,6 +12,10 @@ namespace gimg {
 namespace {
 
 constexpr double kSure = 0.5; // of the energy: below, the extended cut is taken without trying the other
+
+// Faces from which on the energy tells which layout errs less. With fewer, it matters as much how the grid
+// happens to meet their edges.
+constexpr int kSmooth = 20000;
 
 class Unfolder
 {
@@ -37,19 +42,22 @@ public:
                 return Error{ErrorKind::TargetUnreachable, "no star of four paths opens this surface"};
             return octahedral(tips);
         }
-        if (options_.layout == SquareLayout::Cut || !sphere) return alongCut(extrema());
-        return better();
+        if (!sphere) return alongCut(extrema(FlattenEffort::Trial));
+        if (options_.layout == SquareLayout::Cut) return alongCut(extrema(FlattenEffort::Full));
+        return starOrCut();
     }
 
 private:
-    Extrema extrema() const
+    Extrema extrema(FlattenEffort effort) const
     {
-        return findExtrema(coarse_, {}, [&](double fraction) {
+        ExtremaOptions options;
+        options.effort = effort;
+        return findExtrema(coarse_, options, [&](double fraction) {
             if (progress_) progress_("cut", fraction);
         });
     }
 
-    Result<Unfolded> better()
+    Result<Unfolded> starOrCut()
     {
         constexpr double kEven = 3;      // times the least energy possible: no need to look further
         constexpr double kFarMore = 0.7; // of the star's energy
@@ -57,9 +65,9 @@ private:
         const StarTips tips = findStarTips(coarse_);
         if (!tips.vertices.empty() && tips.energy < kEven * area * area * area) {
             if (Result<Unfolded> star = octahedral(tips)) return star;
-            return alongCut(extrema());
+            return alongCut(extrema(FlattenEffort::Full));
         }
-        const Extrema reached = extrema();
+        const Extrema reached = extrema(FlattenEffort::Full);
         if (!tips.vertices.empty() && tips.energy * kFarMore < reached.energyWith)
             if (Result<Unfolded> star = octahedral(tips)) return star;
         return alongCut(reached);
@@ -73,17 +81,15 @@ private:
 
     Result<Unfolded> alongCut(const Extrema& reached)
     {
-        const auto along = [&](std::span<const int> vertices) {
-            return flattened(cutToDisk(mesh_, vertices), static_cast<int>(vertices.size()),
-                             SquareLayout::Cut);
-        };
-        if (reached.vertices.empty()) return along({});
-        Result<Unfolded> extended = along(reached.vertices);
-        if (extended && reached.energyWith < kSure * reached.energyWithout) return extended;
-        Result<Unfolded> plain = along({});
-        if (!extended) return plain;
-        if (!plain) return extended;
-        return quality(*extended) >= quality(*plain) ? std::move(extended) : std::move(plain);
+        const int count = static_cast<int>(reached.vertices.size());
+        if (count == 0) return settled(cutToDisk(mesh_), 0);
+        const CutGraph cut = cutToDisk(mesh_, reached.vertices);
+        if (reached.energyWith < kSure * reached.energyWithout)
+            if (Result<Unfolded> extended = settled(cut, count)) return extended;
+        Result<Unfolded> extended = flattened(cut, count, SquareLayout::Cut);
+        Result<Unfolded> plain = flattened(cutToDisk(mesh_), 0, SquareLayout::Cut);
+        if (!extended && !plain) return plain;
+        return settled(!plain || (extended && quality(*extended) >= quality(*plain)) ? *extended : *plain);
     }
 
     Result<Unfolded> flattened(CutGraph cut, int extrema, SquareLayout layout)
@@ -92,19 +98,71 @@ private:
         options.layout = layout;
         Result<SquareDisk> square = layOutBorder(mesh_, cut, options);
         if (!square) return square.error();
+        return flattened(std::move(cut), std::move(*square), extrema, layout);
+    }
+
+    // Along a cut that is decided, in the layout of a search where that is better.
+    Result<Unfolded> settled(const CutGraph& cut, int extrema) const
+    {
+        constexpr double kClear = 0.9; // of the energy
+        BorderOptions options = options_;
+        options.layout = SquareLayout::Cut;
+        Result<SquareDisk> square = layOutBorder(mesh_, cut, options);
+        if (!square) return square.error();
+        const ImprovedLayout found = improveLayout(mesh_, cut, layoutOf(*square));
+        if (found.energy < kClear && mesh_.faceCount() >= kSmooth)
+            if (Result<Unfolded> sure = laidOut(cut, found.layout, square->grid, extrema)) return sure;
+        return better(flattened(cut, std::move(*square), extrema, SquareLayout::Cut), found.layout);
+    }
+
+    Result<Unfolded> settled(const Unfolded& before) const
+    {
+        return better(before, improveLayout(mesh_, before.cut, layoutOf(before.square)).layout);
+    }
+
+    Result<Unfolded> better(Result<Unfolded> before, const BorderLayout& layout) const
+    {
+        if (!before || layout == layoutOf(before->square)) return before;
+        Result<Unfolded> after = laidOut(before->cut, layout, before->square.grid, before->extrema);
+        return after && isBetter(*after, *before) ? std::move(after) : std::move(before);
+    }
+
+    static BorderLayout layoutOf(const SquareDisk& square)
+    {
+        return {square.lowest, square.start, square.pathLength};
+    }
+
+    Result<Unfolded> laidOut(const CutGraph& cut, const BorderLayout& layout, int grid, int extrema) const
+    {
+        Result<SquareDisk> square = layOutBorder(mesh_, cut, layout, grid);
+        if (!square) return square.error();
+        return flattened(cut, std::move(*square), extrema, SquareLayout::Cut);
+    }
+
+    bool isBetter(const Unfolded& after, const Unfolded& before) const
+    {
+        constexpr double kBareLoss = 0.2; // dB
+        if (!judge_.coded) return quality(after) > quality(before);
+        return judge_.coded(after) > judge_.coded(before) &&
+               judge_.bare(after) > judge_.bare(before) - kBareLoss;
+    }
+
+    Result<Unfolded> flattened(CutGraph cut, SquareDisk square, int extrema, SquareLayout layout) const
+    {
         Result<Parameterization> map = mapToSquare(
-            *square, options_.param,
+            square, options_.param,
             [&](double fraction) {
                 if (progress_) progress_("parameterize", fraction);
             },
             options_.density);
         if (!map) return map.error();
-        return Unfolded{std::move(cut), layout, extrema, std::move(*square), std::move(*map)};
+        return Unfolded{std::move(cut), layout, extrema, std::move(square), std::move(*map)};
     }
 
     double quality(const Unfolded& unfolded) const
     {
-        return judge_ ? judge_(unfolded) : -quarticStretchEnergy(unfolded.square.disk.mesh, unfolded.map.st);
+        return judge_.coded ? judge_.coded(unfolded)
+                            : -quarticStretchEnergy(unfolded.square.disk.mesh, unfolded.map.st);
     }
 
     const Mesh& mesh_;

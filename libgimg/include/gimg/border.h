@@ -32,6 +32,16 @@ struct BorderOptions
     SquareLayout layout = SquareLayout::Auto; ///< layOutBorder takes Auto for Cut
 };
 
+/// How much of the square's border every path of a cut gets, and where the first side begins.
+struct BorderLayout
+{
+    int lowest = 0; ///< samples a side of the lowest level, 2^l + 1; the unit is a step of its grid
+    int start = 0;  ///< border position of the first side, in [0, 4 (lowest - 1))
+    std::vector<int> pathLength; ///< per cut-path
+
+    bool operator==(const BorderLayout&) const = default;
+};
+
 /// A disk with its boundary laid out on the unit square.
 struct SquareDisk
 {
@@ -61,5 +71,9 @@ struct SquareDisk
 /// grid or lowest level (names what would), BadArgument for sizes that are not 2^j + 1. Source: thesis
 /// §3.1.1, boundary parameterization.
 Result<SquareDisk> layOutBorder(const Mesh& mesh, const CutGraph& cut, const BorderOptions& options);
+
+/// The same for a layout that is given: nothing about it is chosen, and whether the seam stays simplicial is
+/// not looked at. Errors: BadArgument where the sizes are not 2^j + 1 or the lengths do not fill the border.
+Result<SquareDisk> layOutBorder(const Mesh& mesh, const CutGraph& cut, const BorderLayout& layout, int grid);
 
 } // namespace gimg

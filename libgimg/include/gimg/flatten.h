@@ -22,6 +22,12 @@ enum class Density
     Even,      ///< the same everywhere: the stretch alone counts
 };
 
+enum class FlattenEffort
+{
+    Full,
+    Trial, ///< descends less far: the energy ends up a few per cent higher, which tells layouts apart
+};
+
 /// Called now and then with the fraction done, in [0,1].
 using Progress = std::function<void(double)>;
 
@@ -36,5 +42,12 @@ using Progress = std::function<void(double)>;
 /// the seam that slides after Aigerman & Lipman 2015 (orbifold embeddings).
 Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progress& progress = {},
                                          Density density = Density::Curvature);
+
+/// The same for any density.
+/// @param importance  per vertex of `square.surface`: how much the stretch of the triangles around it counts;
+/// empty for 1 everywhere
+Result<Parameterization> flattenToSquare(const SquareDisk& square, const std::vector<double>& importance,
+                                         const Progress& progress,
+                                         FlattenEffort effort = FlattenEffort::Full);
 
 } // namespace gimg

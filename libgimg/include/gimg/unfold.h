@@ -26,8 +26,12 @@ struct UnfoldOptions : BorderOptions
 /// Called with the stage, "cut" or "parameterize", and the fraction of it that is done.
 using UnfoldProgress = std::function<void(const char* stage, double fraction)>;
 
-/// How good an unfolding is; more is better.
-using UnfoldJudge = std::function<double(const Unfolded&)>;
+/// How good an unfolding is; more is better. One without functions goes by quarticStretchEnergy.
+struct UnfoldJudge
+{
+    std::function<double(const Unfolded&)> coded; ///< dB of a small file
+    std::function<double(const Unfolded&)> bare;  ///< dB of the grid itself
+};
 
 /// Cut, layout and flattening. Closed surfaces of genus 0 get the octahedral layout, unless a simplified mesh
 /// shows that samples spread far more evenly along an extended cut. The others are cut to a disk, and the cut
