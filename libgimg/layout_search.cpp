@@ -271,6 +271,9 @@ private:
             needs[p].target = static_cast<double>(best.layout.pathLength[p]) / unit;
             needs[p].minimum = (needs[p].minimum + unit - 1) / unit;
         }
+        int least = 0;
+        for (const PathNeeds& need : needs) least += 2 * unit * need.multiplicity * need.minimum;
+        if (least > 4 * (best.layout.lowest - 1)) return found; // hardly any choice is left
         const auto lengths = roundLengths(needs, 4 * (best.layout.lowest - 1) / unit);
         if (!lengths) return found;
         for (size_t p = 0; p < needs.size(); ++p) found.layout.pathLength[p] = unit * (*lengths)[p];

@@ -110,8 +110,11 @@ private:
         Result<SquareDisk> square = layOutBorder(mesh_, cut, options);
         if (!square) return square.error();
         const ImprovedLayout found = improveLayout(mesh_, cut, layoutOf(*square));
-        if (found.energy < kClear && mesh_.faceCount() >= kSmooth)
-            if (Result<Unfolded> sure = laidOut(cut, found.layout, square->grid, extrema)) return sure;
+        if (mesh_.faceCount() >= kSmooth) {
+            if (found.energy < kClear)
+                if (Result<Unfolded> sure = laidOut(cut, found.layout, square->grid, extrema)) return sure;
+            return flattened(cut, std::move(*square), extrema, SquareLayout::Cut);
+        }
         return better(flattened(cut, std::move(*square), extrema, SquareLayout::Cut), found.layout);
     }
 
@@ -143,8 +146,8 @@ private:
     {
         constexpr double kBareLoss = 0.2; // dB
         if (!judge_.coded) return quality(after) > quality(before);
-        return judge_.coded(after) > judge_.coded(before) &&
-               judge_.bare(after) > judge_.bare(before) - kBareLoss;
+        return judge_.bare(after) > judge_.bare(before) - kBareLoss &&
+               judge_.coded(after) > judge_.coded(before);
     }
 
     Result<Unfolded> flattened(CutGraph cut, SquareDisk square, int extrema, SquareLayout layout) const
