@@ -280,6 +280,7 @@ private:
         const int perimeter = 4 * (best.layout.lowest - 1);
         found.layout.start = (best.layout.start + unit / 2) / unit * unit % perimeter;
         if (isAllowed(found.layout)) found = judge(found.layout);
+        turn(found, std::max(unit, (best.layout.lowest - 1) / 8));
         if (found.model) descend(found, unit, 4);
         return found;
     }

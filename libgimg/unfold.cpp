@@ -104,7 +104,7 @@ private:
     // Along a cut that is decided, in the layout of a search where that is better.
     Result<Unfolded> settled(const CutGraph& cut, int extrema) const
     {
-        constexpr double kClear = 0.9; // of the energy
+        constexpr double kClear = 0.92; // of the energy
         BorderOptions options = options_;
         options.layout = SquareLayout::Cut;
         Result<SquareDisk> square = layOutBorder(mesh_, cut, options);
