@@ -109,7 +109,7 @@ private:
         options.layout = SquareLayout::Cut;
         Result<SquareDisk> square = layOutBorder(mesh_, cut, options);
         if (!square) return square.error();
-        const ImprovedLayout found = improveLayout(mesh_, cut, layoutOf(*square));
+        const ImprovedLayout found = improvement(cut, layoutOf(*square));
         if (mesh_.faceCount() >= kSmooth) {
             if (found.energy < kClear)
                 if (Result<Unfolded> sure = laidOut(cut, found.layout, square->grid, extrema)) return sure;
@@ -120,7 +120,13 @@ private:
 
     Result<Unfolded> settled(const Unfolded& before) const
     {
-        return better(before, improveLayout(mesh_, before.cut, layoutOf(before.square)).layout);
+        return better(before, improvement(before.cut, layoutOf(before.square)).layout);
+    }
+
+    // The linear maps hold the whole border where the first layout puts it.
+    ImprovedLayout improvement(const CutGraph& cut, const BorderLayout& first) const
+    {
+        return options_.param == MapKind::Stretch ? improveLayout(mesh_, cut, first) : ImprovedLayout{first};
     }
 
     Result<Unfolded> better(Result<Unfolded> before, const BorderLayout& layout) const
