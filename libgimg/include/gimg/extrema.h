@@ -22,7 +22,8 @@ struct ExtremaOptions
     int faces = 4000;   ///< of the simplified mesh
     int most = 24;      ///< extrema to find at most
     int rejections = 4; ///< candidates in a row that may fail before the search ends
-    FlattenEffort effort = FlattenEffort::Full;
+    FlattenEffort effort =
+        FlattenEffort::Full; ///< of judging; unfold makes trials where the surface is no sphere
 };
 
 /// Where a cut should reach, and what that does for the simplified mesh.
