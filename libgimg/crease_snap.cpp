@@ -4,7 +4,6 @@
 #include <tbb/parallel_for.h>
 
 #include <algorithm>
-#include <limits>
 #include <tuple>
 
 namespace gimg {
@@ -13,8 +12,6 @@ namespace {
 constexpr double kReach = 0.75;      // lengths of a grid edge that one of its ends moves along it, at most
 constexpr double kCornerReach = 0.8; // lengths of the longest edge at a vertex, to a corner
 constexpr double kFar = 0.6;         // lengths of a grid edge: creases farther away do not cross it
-constexpr double kFacing = 0.2;      // least cosine between a triangle's normal and the mesh's
-constexpr double kMissed = 4;        // weight of the gap to the place that is wanted
 
 Vec3 areaVector(const std::vector<Vec3>& x, const Triangle& t)
 {
@@ -41,10 +38,9 @@ template <class Visit> void forEachFaceAt(const GridSurface& surface, int vertex
 } // namespace
 
 CreaseSnap::CreaseSnap(GridSurface& surface, const CreaseNet& net, const NearestTree& mesh)
-    : surface_(surface), net_(net), mesh_(mesh), hold_(surface.positions().size()),
+    : surface_(surface), net_(net), mesh_(mesh), mover_(surface, mesh), hold_(surface.positions().size()),
       vertexAt_(net.corners().size(), -1)
 {
-    surface_.findCells();
 }
 
 void CreaseSnap::snap()
@@ -71,8 +67,61 @@ void CreaseSnap::bringBack()
     for (int v = 0; v < static_cast<int>(hold_.size()); ++v) {
         if (hold_[v].segment < 0) continue;
         const CreaseNet::Place place = net_.nearestAlong(surface_.positions()[v], hold_[v].segment);
-        if (tryMove(v, place.point)) hold_[v].segment = place.segment;
+        if (mover_.tryMove(v, place.point, place.point)) hold_[v].segment = place.segment;
     }
+}
+
+void CreaseSnap::easeWorst()
+{
+    constexpr int kMostSweeps = 10;
+    for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
+        bool eased = false;
+        for (const CellMover::Apart& apart : mover_.farthestApart()) eased = ease(apart) || eased;
+        if (!eased) return;
+    }
+}
+
+/// @return whether it was worth a sweep
+bool CreaseSnap::ease(const CellMover::Apart& apart)
+{
+    constexpr double kWorth = 0.98; // of the error
+    bool eased = false;
+    const Triangle corners = surface_.faces()[apart.face];
+    for (const int v : corners) {
+        if (surface_.isFixed(v) || hold_[v].corner >= 0) continue;
+        const double before = mover_.errorAt(v, apart.point);
+        for (const Vec3& to : placesNear(v, apart.point)) {
+            if (to == surface_.positions()[v] || !mover_.tryMove(v, to, apart.point)) continue;
+            if (hold_[v].segment >= 0) hold_[v].segment = net_.nearestAlong(to, hold_[v].segment).segment;
+        }
+        eased = eased || mover_.errorAt(v, apart.point) < kWorth * before;
+    }
+    return eased;
+}
+
+/// A quarter and half of the way to the vertices around, and to the wanted place.
+std::vector<Vec3> CreaseSnap::placesNear(int vertex, const Vec3& wanted) const
+{
+    const Vec3 from = surface_.positions()[vertex];
+    std::vector<Vec3> ends = {wanted, from + 2 * (wanted - from)};
+    forEachFaceAt(surface_, vertex, [&](const Triangle& t) {
+        for (const int v : t)
+            if (v != vertex && std::find(ends.begin(), ends.end(), surface_.positions()[v]) == ends.end())
+                ends.push_back(surface_.positions()[v]);
+    });
+    std::vector<Vec3> places;
+    int near = 0;
+    for (const Vec3& end : ends)
+        for (const double part : {0.5, 0.25}) {
+            const Vec3 place = from + part * (end - from);
+            if (hold_[vertex].segment >= 0) {
+                places.push_back(net_.nearestAlong(place, hold_[vertex].segment).point);
+            } else {
+                near = mesh_.nearest(place, near).face;
+                places.push_back(mesh_.pointOfFace(near, mesh_.nearestOnFace(place, near)));
+            }
+        }
+    return places;
 }
 
 int CreaseSnap::onCreases() const
@@ -94,7 +143,8 @@ void CreaseSnap::snapCorners()
     for (const Want& want : wantsOfCorners()) {
         if (vertexAt_[want.corner] >= 0 || hold_[want.vertex].corner >= 0) continue;
         if (want.distance > kCornerReach * longestEdgeAt(want.vertex)) continue;
-        if (!tryMove(want.vertex, net_.corners()[want.corner].at)) continue;
+        const Vec3& at = net_.corners()[want.corner].at;
+        if (!mover_.tryMove(want.vertex, at, at)) continue;
         hold_[want.vertex] = {-1, want.corner};
         vertexAt_[want.corner] = want.vertex;
     }
@@ -142,7 +192,7 @@ int CreaseSnap::snapCrossings()
         const int chain = net_.segments()[c.place.segment].chain;
         if (lies(c.vertex, chain) || lies(c.other, chain)) continue;
         for (const auto& [v, reach] : {std::pair(c.vertex, c.reach), {c.other, c.otherReach}}) {
-            if (!isFree(v) || reach > kReach || !tryMove(v, c.place.point)) continue;
+            if (!isFree(v) || reach > kReach || !mover_.tryMove(v, c.place.point, c.place.point)) continue;
             hold_[v].segment = c.place.segment;
             ++count;
             break;
@@ -205,42 +255,6 @@ bool CreaseSnap::lies(int vertex, int chain) const
     if (h.corner < 0) return false;
     const std::vector<int>& chains = net_.corners()[h.corner].chains;
     return std::find(chains.begin(), chains.end(), chain) != chains.end();
-}
-
-/// Errors are fourth powers of distances: it is the largest ones that count.
-CreaseSnap::Quality CreaseSnap::qualityAt(int vertex, const Vec3& wanted) const
-{
-    const std::vector<Vec3>& x = surface_.positions();
-    Quality quality;
-    double missed2 = std::numeric_limits<double>::infinity();
-    int near = 0;
-    forEachFaceAt(surface_, vertex, [&](const Triangle& t) {
-        const Vec3 &a = x[t[0]], &b = x[t[1]], &c = x[t[2]];
-        for (const Vec3& place :
-             {Vec3((a + b) / 2), Vec3((b + c) / 2), Vec3((c + a) / 2), Vec3((a + b + c) / 3)}) {
-            const NearestTree::Found found = mesh_.nearest(place, near);
-            near = found.face;
-            quality.error += found.distance2 * found.distance2;
-        }
-        const Vec3 area = areaVector(x, t);
-        const double size = area.norm();
-        quality.facing = std::min(quality.facing, size > 0 ? area.dot(mesh_.faceNormal(near)) / size : -1.0);
-        missed2 = std::min(missed2, squaredDistanceToTriangle(wanted, a, b, c));
-    });
-    quality.error += kMissed * missed2 * missed2;
-    return quality;
-}
-
-/// Moves a vertex unless its cells fit worse then, or fold over.
-bool CreaseSnap::tryMove(int vertex, const Vec3& to)
-{
-    const Vec3 from = surface_.positions()[vertex];
-    const Quality before = qualityAt(vertex, to);
-    surface_.place(vertex, to);
-    const Quality after = qualityAt(vertex, to);
-    if (after.error <= before.error && after.facing >= std::min(before.facing, kFacing)) return true;
-    surface_.place(vertex, from);
-    return false;
 }
 
 } // namespace gimg

@@ -1,8 +1,10 @@
 #pragma once
 
+#include "cell_mover.h"
 #include "crease_net.h"
 #include "grid_surface.h"
 
+#include <optional>
 #include <vector>
 
 namespace gimg {
@@ -16,7 +18,8 @@ public:
     /// @param mesh  with normals
     CreaseSnap(GridSurface& surface, const CreaseNet& net, const NearestTree& mesh);
 
-    /// Gives every corner a vertex, then every crossing one, each only if the cells there fit better with it.
+    /// Gives every corner a vertex, then every crossing one, each only if the cells there are closer to the
+    /// mesh by it.
     void snap();
 
     /// How vertices on creases may move: along them; those on corners not at all.
@@ -24,6 +27,10 @@ public:
 
     /// Brings vertices back that steps along straight lines took off a crease that bends.
     void bringBack();
+
+    /// Moves vertices a little where the grid and the mesh are farthest apart: any along the mesh, those on
+    /// creases along them.
+    void easeWorst();
 
     int onCreases() const; ///< vertices
     int onCorners() const; ///< vertices
@@ -52,13 +59,6 @@ private:
         int corner, vertex;
     };
 
-    /// How well the cells at a vertex fit.
-    struct Quality
-    {
-        double error = 0;  ///< of places on them, and of one place of the mesh to them
-        double facing = 1; ///< the least cosine between a triangle's normal and the mesh's
-    };
-
     void snapCorners();
     std::vector<Want> wantsOfCorners() const;
     double longestEdgeAt(int vertex) const;
@@ -67,12 +67,13 @@ private:
     std::optional<Crossing> crossing(const std::vector<Vec3>& normals, int a, int b) const;
     bool lies(int vertex, int chain) const;
     bool isFree(int vertex) const { return hold_[vertex].free() && !surface_.isFixed(vertex); }
-    Quality qualityAt(int vertex, const Vec3& wanted) const;
-    bool tryMove(int vertex, const Vec3& to);
+    bool ease(const CellMover::Apart& apart);
+    std::vector<Vec3> placesNear(int vertex, const Vec3& wanted) const;
 
     GridSurface& surface_;
     const CreaseNet& net_;
     const NearestTree& mesh_;
+    CellMover mover_;
     std::vector<Hold> hold_;    ///< per vertex
     std::vector<int> vertexAt_; ///< per corner, or -1
 };

@@ -81,10 +81,12 @@ void follow(const Mesh& mesh, const SurfaceMeasure& measure, const GluedGrid& gr
     for (int round = 0;; ++round) {
         snap.snap();
         best.take(surface.image(), snap);
-        if (round == options.rounds) return;
+        if (round == options.rounds) break;
         surface.fit(pull, options.smoothing, snap.rails());
         snap.bringBack();
     }
+    snap.easeWorst();
+    best.take(surface.image(), snap);
 }
 
 } // namespace
