@@ -71,7 +71,7 @@ CellMover::Quality CellMover::qualityAt(int vertex, const Vec3& wanted) const
     return quality;
 }
 
-std::vector<CellMover::Apart> CellMover::farthestApart() const
+std::vector<CellMover::Apart> CellMover::farthestApart(double negligible) const
 {
     constexpr double kPart = 0.5;
     constexpr size_t kMost = 500;
@@ -88,7 +88,7 @@ std::vector<CellMover::Apart> CellMover::farthestApart() const
         for (int f = range.begin(); f < range.end(); ++f)
             all[static_cast<size_t>(faces) + f] = apartFromGrid(grid, f, near);
     });
-    double worst = 0;
+    double worst = negligible * negligible / (kPart * kPart);
     for (const Apart& apart : all) worst = std::max(worst, apart.distance2);
     std::erase_if(all, [&](const Apart& apart) { return !(apart.distance2 > kPart * kPart * worst); });
     std::stable_sort(all.begin(), all.end(),

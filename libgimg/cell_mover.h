@@ -31,9 +31,9 @@ public:
         Vec3 point = Vec3::Zero();
     };
 
-    /// Where grid and mesh are at least half as far apart as where they are farthest, worst first; no more
-    /// than 500.
-    std::vector<Apart> farthestApart() const;
+    /// Where grid and mesh are farther apart than `negligible` and at least half as far as where they are
+    /// farthest; worst first, no more than 500.
+    std::vector<Apart> farthestApart(double negligible) const;
 
 private:
     struct Quality

@@ -71,12 +71,12 @@ void CreaseSnap::bringBack()
     }
 }
 
-void CreaseSnap::easeWorst()
+void CreaseSnap::easeWorst(double negligible)
 {
     constexpr int kMostSweeps = 10;
     for (int sweep = 0; sweep < kMostSweeps; ++sweep) {
         bool eased = false;
-        for (const CellMover::Apart& apart : mover_.farthestApart()) eased = ease(apart) || eased;
+        for (const CellMover::Apart& apart : mover_.farthestApart(negligible)) eased = ease(apart) || eased;
         if (!eased) return;
     }
 }

@@ -30,7 +30,8 @@ public:
 
     /// Moves vertices a little where the grid and the mesh are farthest apart: any along the mesh, those on
     /// creases along them.
-    void easeWorst();
+    /// @param negligible  distance from which on it is worth it
+    void easeWorst(double negligible);
 
     int onCreases() const; ///< vertices
     int onCorners() const; ///< vertices

@@ -63,6 +63,7 @@ private:
 void follow(const Mesh& mesh, const SurfaceMeasure& measure, const GluedGrid& grid,
             const FeatureOptions& options, FeatureGeometry& out)
 {
+    constexpr double kNegligible = 0.01;
     const UnitFrame frame(mesh);
     std::vector<Vec3> inside = frame.inside(mesh);
     const double spacing = frame.scale * std::sqrt(surfaceArea(mesh)) / (grid.side() - 1);
@@ -85,7 +86,7 @@ void follow(const Mesh& mesh, const SurfaceMeasure& measure, const GluedGrid& gr
         surface.fit(pull, options.smoothing, snap.rails());
         snap.bringBack();
     }
-    snap.easeWorst();
+    snap.easeWorst(kNegligible * spacing);
     best.take(surface.image(), snap);
 }
 
