@@ -104,7 +104,7 @@ TEST_F(Gimenc, ReportsWhatTheFitIsWorthAndLeavesItOut)
 TEST_F(Gimenc, FeaturesLowerTheMaximumOfABoxAndLeaveATorusAlone)
 {
     const auto report = [&](const std::string& options) {
-        const Ended ended = gimenc("--raw float --grid 65 --json - --features" + options);
+        const Ended ended = gimenc("--raw float --grid 33 --json - --features" + options);
         EXPECT_EQ(ended.code, 0) << ended.err;
         return nlohmann::json::parse(ended.out);
     };
@@ -121,7 +121,7 @@ TEST_F(Gimenc, FeaturesLowerTheMaximumOfABoxAndLeaveATorusAlone)
     const auto smooth = report(torus + file("with.gim"));
     EXPECT_EQ(smooth.at("features").at("length"), 0);
     EXPECT_EQ(smooth.at("warnings").size(), 1u);
-    EXPECT_EQ(gimenc("--raw float --grid 65" + torus + file("without.gim")).code, 0);
+    EXPECT_EQ(gimenc("--raw float --grid 33" + torus + file("without.gim")).code, 0);
     EXPECT_EQ(read(path("with.gim")), read(path("without.gim")));
     EXPECT_EQ(gimenc("--raw float --features --no-fit" + torus + file("with.gim")).code, 2);
 }
