@@ -224,7 +224,8 @@ struct Fitted
 };
 
 Result<Fitted> fitImages(const Mesh& mesh, const SurfaceMeasure& measure, const SquareDisk& square,
-                         bool features, FloatImage& geometry, FloatImage& normals)
+                         const std::optional<FeatureOptions>& features, FloatImage& geometry,
+                         FloatImage& normals)
 {
     const GridSeam seam{square.lowest, square.start, square.seam()};
     Result<FittedGeometry> fitted = fitGeometry(mesh, measure, geometry, seam);
@@ -232,7 +233,7 @@ Result<Fitted> fitImages(const Mesh& mesh, const SurfaceMeasure& measure, const 
     geometry = std::move(fitted->image);
     Fitted out{{fitted->psnrBefore, fitted->psnrAfter}, std::nullopt};
     if (features) {
-        Result<FeatureGeometry> followed = followFeatures(mesh, measure, geometry, seam);
+        Result<FeatureGeometry> followed = followFeatures(mesh, measure, geometry, seam, *features);
         if (!followed) return followed.error();
         geometry = std::move(followed->image);
         out.features = followed->report;
@@ -276,10 +277,11 @@ public:
         double sampleSeconds, fitSeconds;
     };
 
-    Result<std::shared_ptr<const Sampled>> at(int grid, const SurfaceMeasure& measure)
+    /// @param lossy  what the samples are for: it makes a difference to those along sharp edges
+    Result<std::shared_ptr<const Sampled>> at(int grid, bool lossy, const SurfaceMeasure& measure)
     {
         const std::lock_guard lock(mutex_);
-        std::shared_ptr<const Sampled>& made = made_[grid];
+        std::shared_ptr<const Sampled>& made = made_[{grid, features_ && lossy}];
         if (made) return made;
         Stopwatch watch;
         Result<FloatImage> geometry = sampleGeometry(unfolded_.square, unfolded_.map, grid);
@@ -288,8 +290,10 @@ public:
         FloatImage normals = normals_;
         std::optional<Fitted> fit;
         if (fit_ && grid <= EncodeOptions::kLargestFit) {
+            std::optional<FeatureOptions> features;
+            if (features_) features.emplace().ease = !lossy;
             const Result<Fitted> fitted =
-                fitImages(unfolded_.square.surface, measure, unfolded_.square, features_, *geometry, normals);
+                fitImages(unfolded_.square.surface, measure, unfolded_.square, features, *geometry, normals);
             if (!fitted) return fitted.error();
             fit = *fitted;
         }
@@ -307,7 +311,7 @@ private:
     const FloatImage normals_;
     const bool fit_, features_;
     std::mutex mutex_;
-    std::map<int, std::shared_ptr<const Sampled>> made_;
+    std::map<std::pair<int, bool>, std::shared_ptr<const Sampled>> made_;
 };
 
 // What to say where sharp edges were asked for in vain.
@@ -413,17 +417,18 @@ Result<EncodedMesh> MeshEncoder::encode(const EncodeGoal& goal) const
     if (prepared_->progress) prepared_->progress("code", 0);
     if (prepared_->anyGrid && goal.target == EncodeTarget::Bytes) return encodeAtBestGrid(goal);
     if (prepared_->anyGrid && goal.target == EncodeTarget::Psnr) return encodeAtAmpleGrid(goal);
-    return encodeAt(prepared_->report.grid, goal);
+    const bool lossy = goal.target == EncodeTarget::Bytes || goal.target == EncodeTarget::Psnr;
+    return encodeAt(prepared_->report.grid, goal, lossy);
 }
 
 Result<EncodedMesh> MeshEncoder::encodeAtBestGrid(const EncodeGoal& goal) const
 {
     constexpr double kWorth = 0.5; // dB
     int grid = std::max(kSmallestGrid, prepared_->report.lowest);
-    Result<EncodedMesh> best = encodeAt(grid, goal);
+    Result<EncodedMesh> best = encodeAt(grid, goal, true);
     while (grid < kLargestGrid) {
         grid = 2 * grid - 1;
-        Result<EncodedMesh> finer = encodeAt(grid, goal);
+        Result<EncodedMesh> finer = encodeAt(grid, goal, true);
         if (best && (!finer || finer->psnr < best->psnr + kWorth)) break;
         best = std::move(finer);
     }
@@ -437,20 +442,20 @@ Result<EncodedMesh> MeshEncoder::encodeAtAmpleGrid(const EncodeGoal& goal) const
     constexpr double kAmple = 6; // dB
     int grid = std::max(kSmallestGrid, prepared_->report.lowest);
     for (; grid < kLargestGrid; grid = 2 * grid - 1) {
-        const Result<EncodedMesh> whole = encodeAt(grid, {EncodeTarget::RawFloat});
+        const Result<EncodedMesh> whole = encodeAt(grid, {EncodeTarget::RawFloat}, true);
         if (!whole) return whole.error();
         if (whole->psnr >= goal.psnr + kAmple) break;
     }
-    Result<EncodedMesh> encoded = encodeAt(grid, goal);
+    Result<EncodedMesh> encoded = encodeAt(grid, goal, true);
     if (grid == kLargestGrid && !encoded && encoded.error().kind == ErrorKind::TargetUnreachable)
-        return encodeAt(2 * grid - 1, goal);
+        return encodeAt(2 * grid - 1, goal, true);
     return encoded;
 }
 
-Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal) const
+Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal, bool lossy) const
 {
     Stopwatch watch;
-    const auto sampled = prepared_->encoders->at(grid, prepared_->measure);
+    const auto sampled = prepared_->encoders->at(grid, lossy, prepared_->measure);
     if (!sampled) return sampled.error();
     watch.lap();
     Result<std::vector<uint8_t>> file =

@@ -86,6 +86,7 @@ void follow(const Mesh& mesh, const SurfaceMeasure& measure, const GluedGrid& gr
         surface.fit(pull, options.smoothing, snap.rails());
         snap.bringBack();
     }
+    if (!options.ease) return;
     snap.easeWorst(kNegligible * spacing);
     best.take(surface.image(), snap);
 }

@@ -51,7 +51,8 @@ struct EncodeOptions : EncodeGoal
     MapKind param = MapKind::Stretch; ///< how the surface is mapped to the square
     Density density = Density::Curvature;
     bool fit = true; ///< move the samples to where the triangles between them fit the mesh, see fitGeometry
-    bool features = false; ///< lay grid lines along sharp edges, see followFeatures; needs `fit`
+    bool features = false; ///< lay grid lines along sharp edges, see followFeatures; needs `fit`.
+                           ///< For bytes or a PSNR without FeatureOptions::ease
 };
 
 /// What the fit is worth: PSNR of the triangles between the samples, before anything is lost in coding.
@@ -107,7 +108,7 @@ public:
     Result<EncodedMesh> encode(const EncodeGoal& goal) const;
 
 private:
-    Result<EncodedMesh> encodeAt(int grid, const EncodeGoal& goal) const;
+    Result<EncodedMesh> encodeAt(int grid, const EncodeGoal& goal, bool lossy) const;
     Result<EncodedMesh> encodeAtBestGrid(const EncodeGoal& goal) const;
     Result<EncodedMesh> encodeAtAmpleGrid(const EncodeGoal& goal) const;
     struct Prepared;
