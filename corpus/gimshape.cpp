@@ -10,6 +10,7 @@
 namespace {
 
 using gimg::Mesh;
+using gimg::Vec3;
 namespace shapes = gimg::shapes;
 
 struct Options
@@ -28,6 +29,7 @@ const std::map<std::string, Maker> kShapes = {
     {"trefoil", [](const Options& o) { return shapes::trefoil(0.4, 10 * o.resolution, o.resolution); }},
     {"cylinder", [](const Options& o) { return shapes::cylinder(1, 2, 3 * o.resolution, o.resolution); }},
     {"disk", [](const Options& o) { return shapes::disk(1, o.resolution); }},
+    {"box", [](const Options& o) { return shapes::box(Vec3(3, 2, 1), o.resolution); }},
     {"plate", [](const Options& o) { return shapes::plate(o.loops > 0 ? o.loops - 1 : 0, o.resolution); }},
     {"genus", [](const Options& o) { return shapes::surfaceOfGenus(o.genus, o.loops, o.resolution); }},
 };

@@ -213,6 +213,28 @@ Mesh disk(double radius, int n)
     return mesh;
 }
 
+Mesh box(const Vec3& sides, int n)
+{
+    Mesh mesh;
+    Lattice lattice;
+    const auto at = [&](int axis, int end, int x, int y) {
+        std::array<int, 3> p{};
+        p[axis] = end, p[(axis + 1) % 3] = x, p[(axis + 2) % 3] = y;
+        return lattice.vertex(mesh, {p[0], p[1], p[2]}, [&] {
+            return Vec3(sides.cwiseProduct(Vec3(p[0], p[1], p[2]) / n - Vec3::Constant(0.5)));
+        });
+    };
+    for (int axis = 0; axis < 3; ++axis)
+        for (int x = 0; x < n; ++x)
+            for (int y = 0; y < n; ++y) {
+                addQuad(mesh, at(axis, n, x, y), at(axis, n, x + 1, y), at(axis, n, x + 1, y + 1),
+                        at(axis, n, x, y + 1));
+                addQuad(mesh, at(axis, 0, x, y), at(axis, 0, x, y + 1), at(axis, 0, x + 1, y + 1),
+                        at(axis, 0, x + 1, y));
+            }
+    return mesh;
+}
+
 Mesh plate(int holes, int n)
 {
     const double holeRadius = 0.6;

@@ -40,6 +40,10 @@ Mesh disk(double radius, int n);
 /// @param n  segments along the side of a square, >= 1
 Mesh plate(int holes, int n);
 
+/// Box around the origin with sides of these lengths, n x n quads of two faces each: sharp edges that end in
+/// corners. 12 n^2 faces, n >= 1.
+Mesh box(const Vec3& sides, int n);
+
 /// Smooth surface of any genus with openings where wanted. It follows a flat ladder with `genus` gaps between
 /// its rungs: a level set of a Gaussian convolved with the ladder's bars. Lies within |z| < 1.
 /// @param genus  >= 0

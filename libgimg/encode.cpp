@@ -232,19 +232,33 @@ double barePsnr(const Unfolded& unfolded, const SurfaceMeasure& measure)
                      [&](const codec::Encoder& encoder) { return encoder.encode(settings); });
 }
 
-Result<FitGain> fitImages(const Mesh& mesh, const SurfaceMeasure& measure, const SquareDisk& square,
-                          FloatImage& geometry, FloatImage& normals)
+struct Fitted
+{
+    FitGain gain;
+    std::optional<FeatureReport> features;
+};
+
+Result<Fitted> fitImages(const Mesh& mesh, const SurfaceMeasure& measure, const SquareDisk& square,
+                         const std::optional<FeatureOptions>& features, FloatImage& geometry,
+                         FloatImage& normals)
 {
     const GridSeam seam{square.lowest, square.start, square.seam()};
     Result<FittedGeometry> fitted = fitGeometry(mesh, measure, geometry, seam);
     if (!fitted) return fitted.error();
     geometry = std::move(fitted->image);
+    Fitted out{{fitted->psnrBefore, fitted->psnrAfter}, std::nullopt};
+    if (features) {
+        Result<FeatureGeometry> followed = followFeatures(mesh, measure, geometry, seam, *features);
+        if (!followed) return followed.error();
+        geometry = std::move(followed->image);
+        out.features = followed->report;
+    }
     if (normals.width > 0) {
         Result<FloatImage> follow = fitNormals(mesh, geometry, seam, normals);
         if (!follow) return follow.error();
         normals = std::move(*follow);
     }
-    return FitGain{fitted->psnrBefore, fitted->psnrAfter};
+    return out;
 }
 
 // As many threads as asked for while it lives.
@@ -265,8 +279,8 @@ private:
 class GridEncoders
 {
 public:
-    GridEncoders(Unfolded unfolded, FloatImage normals, bool fit)
-        : unfolded_(std::move(unfolded)), normals_(std::move(normals)), fit_(fit)
+    GridEncoders(Unfolded unfolded, FloatImage normals, bool fit, bool features)
+        : unfolded_(std::move(unfolded)), normals_(std::move(normals)), fit_(fit), features_(features)
     {
     }
 
@@ -274,32 +288,35 @@ public:
     {
         codec::Encoder encoder;
         double seamLength;
-        std::optional<FitGain> fit;
+        std::optional<Fitted> fit;
         double sampleSeconds, fitSeconds;
     };
 
-    Result<std::shared_ptr<const Sampled>> at(int grid, const SurfaceMeasure& measure)
+    /// @param lossy  what the samples are for: it makes a difference to those along sharp edges
+    Result<std::shared_ptr<const Sampled>> at(int grid, bool lossy, const SurfaceMeasure& measure)
     {
         const std::lock_guard lock(mutex_);
-        std::shared_ptr<const Sampled>& made = made_[grid];
+        std::shared_ptr<const Sampled>& made = made_[{grid, features_ && lossy}];
         if (made) return made;
         Stopwatch watch;
         Result<FloatImage> geometry = sampleGeometry(unfolded_.square, unfolded_.map, grid);
         if (!geometry) return geometry.error();
         const double sampleSeconds = watch.lap();
         FloatImage normals = normals_;
-        std::optional<FitGain> gain;
+        std::optional<Fitted> fit;
         if (fit_ && grid <= EncodeOptions::kLargestFit) {
-            const Result<FitGain> fitted =
-                fitImages(unfolded_.square.surface, measure, unfolded_.square, *geometry, normals);
+            std::optional<FeatureOptions> features;
+            if (features_) features.emplace().ease = !lossy;
+            const Result<Fitted> fitted =
+                fitImages(unfolded_.square.surface, measure, unfolded_.square, features, *geometry, normals);
             if (!fitted) return fitted.error();
-            gain = *fitted;
+            fit = *fitted;
         }
         const double fitSeconds = watch.lap();
         Result<codec::Encoder> encoder = encoderOf(unfolded_.square, grid, *geometry, normals);
         if (!encoder) return encoder.error();
         made = std::make_shared<const Sampled>(Sampled{std::move(*encoder),
-                                                       gimg::seamLength(unfolded_.square, *geometry), gain,
+                                                       gimg::seamLength(unfolded_.square, *geometry), fit,
                                                        sampleSeconds, fitSeconds});
         return made;
     }
@@ -307,10 +324,23 @@ public:
 private:
     const Unfolded unfolded_;
     const FloatImage normals_;
-    const bool fit_;
+    const bool fit_, features_;
     std::mutex mutex_;
-    std::map<int, std::shared_ptr<const Sampled>> made_;
+    std::map<std::pair<int, bool>, std::shared_ptr<const Sampled>> made_;
 };
+
+// What to say where sharp edges were asked for in vain.
+std::string objectionToFeatures(const EncodedMesh& encoded)
+{
+    if (!encoded.features)
+        return "a grid of " + std::to_string(encoded.grid) +
+               " is not fitted: its lines do not follow sharp edges";
+    if (encoded.features->length == 0)
+        return "no sharp edges were found: the grid is the same as without them";
+    if (!encoded.features->kept)
+        return "along sharp edges the grid was no closer: it is the same as without them";
+    return {};
+}
 
 constexpr int kSmallestGrid = 129, kLargestGrid = 513; // that are chosen where the grid is left open
 
@@ -319,6 +349,7 @@ constexpr int kSmallestGrid = 129, kLargestGrid = 513; // that are chosen where 
 struct MeshEncoder::Prepared
 {
     EncodedMesh report; ///< all but what coding adds
+    bool features;      ///< EncodeOptions::features
     bool anyGrid;       ///< whether the goal may choose the grid
     std::unique_ptr<GridEncoders> encoders;
     SurfaceMeasure measure;
@@ -339,6 +370,8 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
         if (options.progress) options.progress(name, fraction);
     };
 
+    if (options.features && !options.fit)
+        return Error{ErrorKind::BadArgument, "grid lines along sharp edges need the fit"};
     if (options.normals != 0 && !isImageSize(options.normals))
         return Error{ErrorKind::BadArgument, "normal image of " + std::to_string(options.normals) +
                                                  " is not 2^k + 1 between 3 and " +
@@ -384,13 +417,14 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     if (options.normals != 0) normals = sampleNormals(square, map, options.normals);
     if (!normals) return normals.error();
     out.normals = options.normals;
-    auto encoders = std::make_unique<GridEncoders>(std::move(*unfolded), std::move(*normals), options.fit);
+    auto encoders = std::make_unique<GridEncoders>(std::move(*unfolded), std::move(*normals), options.fit,
+                                                   options.features);
     out.seconds.sample = watch.lap();
     measured();
     out.seconds.code = watch.lap();
-    return MeshEncoder(
-        std::make_unique<const Prepared>(Prepared{std::move(out), options.grid == 0, std::move(encoders),
-                                                  std::move(*measure), options.progress, options.threads}));
+    return MeshEncoder(std::make_unique<const Prepared>(
+        Prepared{std::move(out), options.features, options.grid == 0, std::move(encoders),
+                 std::move(*measure), options.progress, options.threads}));
 }
 
 Result<EncodedMesh> MeshEncoder::encode(const EncodeGoal& goal) const
@@ -399,17 +433,18 @@ Result<EncodedMesh> MeshEncoder::encode(const EncodeGoal& goal) const
     if (prepared_->progress) prepared_->progress("code", 0);
     if (prepared_->anyGrid && goal.target == EncodeTarget::Bytes) return encodeAtBestGrid(goal);
     if (prepared_->anyGrid && goal.target == EncodeTarget::Psnr) return encodeAtAmpleGrid(goal);
-    return encodeAt(prepared_->report.grid, goal);
+    const bool lossy = goal.target == EncodeTarget::Bytes || goal.target == EncodeTarget::Psnr;
+    return encodeAt(prepared_->report.grid, goal, lossy);
 }
 
 Result<EncodedMesh> MeshEncoder::encodeAtBestGrid(const EncodeGoal& goal) const
 {
     constexpr double kWorth = 0.5; // dB
     int grid = std::max(kSmallestGrid, prepared_->report.lowest);
-    Result<EncodedMesh> best = encodeAt(grid, goal);
+    Result<EncodedMesh> best = encodeAt(grid, goal, true);
     while (grid < kLargestGrid) {
         grid = 2 * grid - 1;
-        Result<EncodedMesh> finer = encodeAt(grid, goal);
+        Result<EncodedMesh> finer = encodeAt(grid, goal, true);
         if (best && (!finer || finer->psnr < best->psnr + kWorth)) break;
         best = std::move(finer);
     }
@@ -423,20 +458,20 @@ Result<EncodedMesh> MeshEncoder::encodeAtAmpleGrid(const EncodeGoal& goal) const
     constexpr double kAmple = 6; // dB
     int grid = std::max(kSmallestGrid, prepared_->report.lowest);
     for (; grid < kLargestGrid; grid = 2 * grid - 1) {
-        const Result<EncodedMesh> whole = encodeAt(grid, {EncodeTarget::RawFloat});
+        const Result<EncodedMesh> whole = encodeAt(grid, {EncodeTarget::RawFloat}, true);
         if (!whole) return whole.error();
         if (whole->psnr >= goal.psnr + kAmple) break;
     }
-    Result<EncodedMesh> encoded = encodeAt(grid, goal);
+    Result<EncodedMesh> encoded = encodeAt(grid, goal, true);
     if (grid == kLargestGrid && !encoded && encoded.error().kind == ErrorKind::TargetUnreachable)
-        return encodeAt(2 * grid - 1, goal);
+        return encodeAt(2 * grid - 1, goal, true);
     return encoded;
 }
 
-Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal) const
+Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal, bool lossy) const
 {
     Stopwatch watch;
-    const auto sampled = prepared_->encoders->at(grid, prepared_->measure);
+    const auto sampled = prepared_->encoders->at(grid, lossy, prepared_->measure);
     if (!sampled) return sampled.error();
     watch.lap();
     Result<std::vector<uint8_t>> file =
@@ -448,13 +483,19 @@ Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal) cons
     EncodedMesh out = prepared_->report;
     out.grid = grid;
     out.cutLength = (*sampled)->seamLength;
-    out.fit = (*sampled)->fit;
+    if ((*sampled)->fit) {
+        out.fit = (*sampled)->fit->gain;
+        out.features = (*sampled)->fit->features;
+    }
     out.seconds.sample += (*sampled)->sampleSeconds;
     out.seconds.fit = (*sampled)->fitSeconds;
     out.file = std::move(*file);
     out.psnr = *psnr;
+    if (prepared_->features)
+        if (std::string what = objectionToFeatures(out); !what.empty())
+            out.warnings.push_back(std::move(what));
     if (out.psnr == 0)
-        out.warnings.push_back("the decoded surface has hardly any area: its PSNR counts as 0 dB");
+        out.warnings.emplace_back("the decoded surface has hardly any area: its PSNR counts as 0 dB");
     out.seconds.code += watch.lap();
     return out;
 }

@@ -32,20 +32,6 @@ double squaredDistanceToSegment(const Vec3& q, const Vec3& a, const Vec3& b)
     return (q - a - alongSegment(q, a, b) * (b - a)).squaredNorm();
 }
 
-double squaredDistanceToTriangle(const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c)
-{
-    const Vec3 ab = b - a, ac = c - a, bc = c - b;
-    const Vec3 aq = q - a, bq = q - b;
-    const Vec3 n = ab.cross(ac);
-    if (hasNormal(n, ab, ac) && ab.cross(aq).dot(n) >= 0 && bc.cross(bq).dot(n) >= 0 &&
-        aq.cross(ac).dot(n) >= 0) {
-        const double h = aq.dot(n);
-        return h * h / n.squaredNorm();
-    }
-    return std::min({squaredDistanceToSegment(q, a, b), squaredDistanceToSegment(q, b, c),
-                     squaredDistanceToSegment(q, a, c)});
-}
-
 /// The point that squaredDistanceToTriangle() measures to, as weights of a, b, c.
 Vec3 nearestOnTriangle(const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c)
 {
@@ -72,6 +58,20 @@ Vec3 nearestOnTriangle(const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& 
 }
 
 } // namespace
+
+double squaredDistanceToTriangle(const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c)
+{
+    const Vec3 ab = b - a, ac = c - a, bc = c - b;
+    const Vec3 aq = q - a, bq = q - b;
+    const Vec3 n = ab.cross(ac);
+    if (hasNormal(n, ab, ac) && ab.cross(aq).dot(n) >= 0 && bc.cross(bq).dot(n) >= 0 &&
+        aq.cross(ac).dot(n) >= 0) {
+        const double h = aq.dot(n);
+        return h * h / n.squaredNorm();
+    }
+    return std::min({squaredDistanceToSegment(q, a, b), squaredDistanceToSegment(q, b, c),
+                     squaredDistanceToSegment(q, a, c)});
+}
 
 UnitFrame::UnitFrame(const Mesh& mesh)
 {

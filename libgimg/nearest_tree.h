@@ -22,6 +22,9 @@ struct UnitFrame
     std::vector<Vec3> inside(const Mesh& mesh) const; ///< positions; zero for vertices in no face
 };
 
+/// To the triangle a b c; without area it counts as a segment or a point.
+double squaredDistanceToTriangle(const Vec3& q, const Vec3& a, const Vec3& b, const Vec3& c);
+
 /// Finds the nearest one of many triangles, in doubles. What is found does not depend on the shape of the
 /// tree: of triangles at the same distance it is the first.
 class NearestTree

@@ -18,6 +18,8 @@ public:
     /// @param samples  drawn on the mesh, evenly over its area
     SurfacePull(NearestTree mesh, int samples);
 
+    const NearestTree& mesh() const { return mesh_; } ///< with normals
+
     /// The normal equations for steps of the surface's vertices, one entry a triangle. A pair counts by area.
     /// Pairs of places that face away from each other do not count.
     std::vector<TriangleEquations> equations(const std::vector<Vec3>& positions,

@@ -94,6 +94,7 @@ TEST(Shapes, TopologyAndAnglesAtSeveralResolutions)
         expectShape(shapes::trefoil(0.4, 10 * n, n), 1, 0, 20);
         expectShape(shapes::cylinder(1, 2, 3 * n, n), 0, 2, 35);
         expectShape(shapes::disk(1, n), 0, 1, 40);
+        expectShape(shapes::box(Vec3::Ones(), n), 0, 0, 44);
         for (const int holes : {0, 1, 2, 6}) expectShape(shapes::plate(holes, n), 0, holes + 1, 12);
     }
 }
@@ -168,6 +169,8 @@ TEST(Shapes, SurfacesConvergeToTheirArea)
                     4, 0.3);
     }
     EXPECT_NEAR(surfaceArea(shapes::plate(0, 5)), 4, 1e-12);
+    EXPECT_NEAR(surfaceArea(shapes::box(Vec3(3, 2, 1), 5)), 22, 1e-12);
+    EXPECT_NEAR(shapes::volume(shapes::box(Vec3(3, 2, 1), 5)), 6, 1e-12);
 }
 
 TEST(Shapes, OpenSurfacesFaceAsDocumented)

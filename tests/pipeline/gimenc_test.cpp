@@ -101,6 +101,31 @@ TEST_F(Gimenc, ReportsWhatTheFitIsWorthAndLeavesItOut)
     EXPECT_GT(fitted.at("psnr").get<double>(), plain.at("psnr").get<double>() + 4);
 }
 
+TEST_F(Gimenc, FeaturesLowerTheMaximumOfABoxAndLeaveATorusAlone)
+{
+    const auto report = [&](const std::string& options) {
+        const Ended ended = gimenc("--raw float --grid 33 --json - --features" + options);
+        EXPECT_EQ(ended.code, 0) << ended.err;
+        return nlohmann::json::parse(ended.out);
+    };
+    const auto box = report(mesh("box.ply", shapes::box(Vec3(1, 0.8, 0.6), 4)) + file("box.gim"));
+    const auto& found = box.at("features");
+    EXPECT_EQ(found.at("creases"), 12);
+    EXPECT_EQ(found.at("on_corners"), 8);
+    EXPECT_EQ(found.at("db_after"), box.at("psnr"));
+    EXPECT_EQ(found.at("db_before"), box.at("fit").at("db_after"));
+    EXPECT_LT(found.at("max_after").get<double>(), found.at("max_before").get<double>() / 2);
+    EXPECT_EQ(box.at("warnings").size(), 0u);
+
+    const std::string torus = mesh("torus.ply", shapes::torus(2, 1, 40, 20));
+    const auto smooth = report(torus + file("with.gim"));
+    EXPECT_EQ(smooth.at("features").at("length"), 0);
+    EXPECT_EQ(smooth.at("warnings").size(), 1u);
+    EXPECT_EQ(gimenc("--raw float --grid 33" + torus + file("without.gim")).code, 0);
+    EXPECT_EQ(read(path("with.gim")), read(path("without.gim")));
+    EXPECT_EQ(gimenc("--raw float --features --no-fit" + torus + file("with.gim")).code, 2);
+}
+
 TEST_F(Gimenc, ExitCodesTellRefusedUsageAndUnreachableApart)
 {
     const std::string sphere = mesh("sphere.obj", shapes::sphere(1, 6));

@@ -95,8 +95,12 @@ void addOptions(CLI::App& app, Arguments& a)
         ->check(CLI::IsMember({"12", "float"}));
     target->require_option(0, 1);
     app.add_option("--normals", a.normals, "add a normal image of this many samples a side, 2^k + 1");
-    app.add_flag("--no-fit", a.noFit,
-                 "keep samples on the mesh; else they move to where the triangles between them fit it best");
+    auto* noFit = app.add_flag(
+        "--no-fit", a.noFit,
+        "keep samples on the mesh; else they move to where the triangles between them fit it best");
+    app.add_flag("--features", a.features,
+                 "lay grid lines along the sharp edges of machine parts and the like")
+        ->excludes(noFit);
     app.add_option("--component", a.component, "of several components take the largest")
         ->check(CLI::IsMember({"largest"}));
     app.add_option("--weld", a.weld,
@@ -168,6 +172,7 @@ std::vector<std::string> fileOptions(const Arguments& a)
     if (a.layout != "auto") add("--layout", a.layout);
     if (a.normals != 0) add("--normals", std::to_string(a.normals));
     if (a.noFit) words.push_back("--no-fit");
+    if (a.features) words.push_back("--features");
     if (!a.component.empty()) add("--component", a.component);
     if (a.weld != "auto") add("--weld", a.weld);
     if (a.density != "curvature") add("--density", a.density);
@@ -194,6 +199,7 @@ EncodeOptions encodeOptions(const Arguments& a)
                                                 : SquareLayout::Auto;
     options.normals = a.normals;
     options.fit = !a.noFit;
+    options.features = a.features;
     options.threads = a.threads;
     options.density = a.density == "even" ? Density::Even : Density::Curvature;
     for (MapKind kind : kMapKinds)

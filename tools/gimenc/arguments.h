@@ -36,6 +36,7 @@ struct Arguments
     std::string weld = "auto";
     std::string param = "stretch";
     bool noFit = false;
+    bool features = false;
     std::optional<int> maxGenus;
     bool removeNoise = false; ///< --max-genus auto
     std::optional<MeshLength> closeHoles;

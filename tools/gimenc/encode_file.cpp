@@ -68,6 +68,21 @@ struct Seconds
     double read = 0, topology = 0, total = 0; ///< the others are EncodedMesh's
 };
 
+nlohmann::ordered_json features(const FeatureReport& found)
+{
+    return {{"length", found.length},
+            {"creases", found.creases},
+            {"corners", found.corners},
+            {"on_creases", found.onCreases},
+            {"on_corners", found.onCorners},
+            {"crossings_left", found.crossings},
+            {"kept", found.kept},
+            {"db_before", finite(found.psnrBefore)},
+            {"db_after", finite(found.psnrAfter)},
+            {"max_before", found.maxBefore},
+            {"max_after", found.maxAfter}};
+}
+
 nlohmann::ordered_json report(const EncodedMesh& encoded, const SimplifiedSurface& simplified,
                               const Seconds& seconds)
 {
@@ -93,6 +108,8 @@ nlohmann::ordered_json report(const EncodedMesh& encoded, const SimplifiedSurfac
     if (encoded.fit)
         json["fit"] = {{"db_before", finite(encoded.fit->psnrBefore)},
                        {"db_after", finite(encoded.fit->psnrAfter)}};
+    json["features"] = nullptr;
+    if (encoded.features) json["features"] = features(*encoded.features);
     json["stretch_efficiency"] = encoded.stretchEfficiency;
     json["cut"] = {{"nodes", encoded.cutNodes},
                    {"paths", encoded.cutPaths},

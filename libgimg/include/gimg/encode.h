@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gimg/border.h"
+#include "gimg/features.h"
 #include "gimg/linear_maps.h"
 #include "gimg/mesh.h"
 #include "gimg/result.h"
@@ -50,6 +51,8 @@ struct EncodeOptions : EncodeGoal
     MapKind param = MapKind::Stretch; ///< how the surface is mapped to the square
     Density density = Density::Curvature;
     bool fit = true; ///< move the samples to where the triangles between them fit the mesh, see fitGeometry
+    bool features = false; ///< lay grid lines along sharp edges, see followFeatures; needs `fit`.
+                           ///< For bytes or a PSNR without FeatureOptions::ease
 };
 
 /// What the fit is worth: PSNR of the triangles between the samples, before anything is lost in coding.
@@ -79,7 +82,8 @@ struct EncodedMesh
     int cutPaths = 0;
     int cutExtrema = 0;         ///< tips that the cut was extended to
     std::optional<FitGain> fit; ///< none: not asked for, or a grid above EncodeOptions::kLargestFit
-    double cutLength = 0;       ///< of the seam and the boundary as sampled, in the mesh's unit
+    std::optional<FeatureReport> features; ///< none: not asked for, or a grid that is not fitted
+    double cutLength = 0;                  ///< of the seam and the boundary as sampled, in the mesh's unit
     EncodeSeconds seconds;
     std::vector<std::string> warnings;
 };
@@ -104,7 +108,7 @@ public:
     Result<EncodedMesh> encode(const EncodeGoal& goal) const;
 
 private:
-    Result<EncodedMesh> encodeAt(int grid, const EncodeGoal& goal) const;
+    Result<EncodedMesh> encodeAt(int grid, const EncodeGoal& goal, bool lossy) const;
     Result<EncodedMesh> encodeAtBestGrid(const EncodeGoal& goal) const;
     Result<EncodedMesh> encodeAtAmpleGrid(const EncodeGoal& goal) const;
     struct Prepared;
