@@ -76,7 +76,8 @@ struct SurfaceMemory
 {
     static std::uint64_t size(std::uint32_t grid)
     {
-        return 2 * kComponents * (Arena::sizeOf<double>(samplesOf(grid)) + Arena::sizeOf<std::int32_t>(codedSize(grid))) +
+        return 2 * kComponents *
+                   (Arena::sizeOf<double>(samplesOf(grid)) + Arena::sizeOf<std::int32_t>(codedSize(grid))) +
                kComponents * Arena::sizeOf<double>(coarseSamplesOf(grid)) +
                Arena::sizeOf<double>(2 * std::size_t{borderSize(grid)}) +
                Arena::sizeOf<std::uint32_t>(borderSize(grid)) + Arena::sizeOf<SurfaceModels>(1);

@@ -26,13 +26,14 @@ struct Source
 
 struct Settings
 {
-    gim_coding coding = GIM_CODING_SURFACE; ///< of the geometry; normals that go with a surface are wavelet coded
-    float step = 0;       ///< surface, wavelet: quantisation step, in the surface's units
-    float normalStep = 0; ///< the same for the normals, if there are any
+    gim_coding coding =
+        GIM_CODING_SURFACE; ///< of the geometry; normals that go with a surface are wavelet coded
+    float step = 0;         ///< surface, wavelet: quantisation step, in the surface's units
+    float normalStep = 0;   ///< the same for the normals, if there are any
 };
 
-/// Moves samples along the surface: it is given what a decoder will make of them, and changes the targets that
-/// it was to come near, 3 grid^2 numbers each. Glued targets must stay equal.
+/// Moves samples along the surface: it is given what a decoder will make of them, and changes the targets
+/// that it was to come near, 3 grid^2 numbers each. Glued targets must stay equal.
 using Retarget = std::function<void(std::span<const float> decoded, std::span<float> targets)>;
 
 struct EncodedFile
@@ -69,7 +70,8 @@ public:
     Outcome<EncodedFile> encode(const Settings& settings) const;
 
     /// The encoder of samples that have slid: `rounds` times the surface is coded at the step and its targets
-    /// are moved. What slides along the surface need not be coded, so that a file of the same size comes nearer.
+    /// are moved. What slides along the surface need not be coded, so that a file of the same size comes
+    /// nearer.
     Outcome<Encoder> slid(float step, int rounds, const Retarget& retarget) const;
 
     /// The best file with a surface coded in at most `target` bytes; at most max(1 %, 24 bytes) smaller.

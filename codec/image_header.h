@@ -37,8 +37,8 @@ ReadStatus readImageHeader(format::ByteSpan content, ImageKind kind, ImageHeader
 /// Bytes of `samples` raw12 coding takes.
 constexpr std::uint64_t raw12Size(std::uint64_t grid) { return (grid * grid * kComponents * 12 + 7) / 8; }
 
-/// What the fixed fields of a surface's chunk mean. The low nibble of `ratios` is SurfaceParameters::rise, the
-/// high one half of SurfaceParameters::most; `areaLimit` is in sixteenths above 1.
+/// What the fixed fields of a surface's chunk mean. The low nibble of `ratios` is SurfaceParameters::rise,
+/// the high one half of SurfaceParameters::most; `areaLimit` is in sixteenths above 1.
 SurfaceParameters surfaceParameters(const ImageHeader& header);
 
 /// Bytes that decodeImage() takes from its arena.

@@ -50,7 +50,9 @@ inline constexpr StretchTable kStretch{};
 
 constexpr int clampStretch(std::int64_t sum)
 {
-    return sum > kStretchLimit ? kStretchLimit : sum < -kStretchLimit ? -kStretchLimit : static_cast<int>(sum);
+    return sum > kStretchLimit    ? kStretchLimit
+           : sum < -kStretchLimit ? -kStretchLimit
+                                  : static_cast<int>(sum);
 }
 
 /// Weights of `Count` estimates, in units of 2^-16.
@@ -68,7 +70,8 @@ template <unsigned Count> struct MixWeights
     void learn(const int (&stretched)[Count], int error)
     {
         for (unsigned k = 0; k < Count; ++k) {
-            const std::int32_t moved = weight[k] + ((stretched[k] * error + (1 << (kMixShift - 1))) >> kMixShift);
+            const std::int32_t moved =
+                weight[k] + ((stretched[k] * error + (1 << (kMixShift - 1))) >> kMixShift);
             weight[k] = moved > kMixLimit ? kMixLimit : moved < -kMixLimit ? -kMixLimit : moved;
         }
     }
@@ -98,8 +101,8 @@ bool codeMixed(Coder& coder, BitModel* const (&models)[Count], MixWeights<Count>
     return one;
 }
 
-/// The same with two sets of weights, chosen by different contexts, whose results are averaged before squash().
-/// Each set learns from its own error.
+/// The same with two sets of weights, chosen by different contexts, whose results are averaged before
+/// squash(). Each set learns from its own error.
 template <unsigned Count, class Coder>
 bool codeMixed(Coder& coder, BitModel* const (&models)[Count], MixWeights<Count>& first,
                MixWeights<Count>& second, bool bit)

@@ -9,12 +9,12 @@ namespace gimg::codec {
 /// Memory for coding a surface of grid n.
 struct SurfaceWork
 {
-    double* surface[kComponents]; ///< n^2: the surface; before its details are known, its prediction
-    double* detail[kComponents];  ///< n^2
-    double* coarse[kComponents];  ///< ((n + 1) / 2)^2
-    std::int32_t* coded[kComponents];  ///< codedSize(n): quantised details, where they lie in the surface
+    double* surface[kComponents];       ///< n^2: the surface; before its details are known, its prediction
+    double* detail[kComponents];        ///< n^2
+    double* coarse[kComponents];        ///< ((n + 1) / 2)^2
+    std::int32_t* coded[kComponents];   ///< codedSize(n): quantised details, where they lie in the surface
     std::int32_t* parents[kComponents]; ///< codedSize(n)
-    double* border;               ///< 2 borderSize(n)
+    double* border;                     ///< 2 borderSize(n)
 };
 
 constexpr std::uint32_t kCodedMargin = 4;
@@ -25,10 +25,12 @@ inline std::size_t codedIndex(std::uint32_t grid, std::uint32_t i, std::uint32_t
     return (j + kCodedMargin) * codedPitch(grid) + i + kCodedMargin;
 }
 
-/// Codes the details of one level. On entry work.surface holds the prediction and work.detail zeros; on return
-/// work.detail holds the details as vectors.
-/// @param pick  pick(coder, context, component, index in the level, frame) codes a detail with codeSurfaceDetail() and
-///              returns it; pick.isEmpty(orientation, component): an encoder knows that the band holds zeros only
+/// Codes the details of one level. On entry work.surface holds the prediction and work.detail zeros; on
+/// return work.detail holds the details as vectors.
+/// @param pick  pick(coder, context, component, index in the level, frame) codes a detail with
+/// codeSurfaceDetail() and
+///              returns it; pick.isEmpty(orientation, component): an encoder knows that the band holds zeros
+///              only
 /// @return whether any detail is not 0
 template <class Coder, class Pick>
 bool codeLevel(Coder& coder, SurfaceModels& models, const SurfaceParameters& parameters, SurfaceWork& work,
@@ -55,9 +57,9 @@ bool codeLevel(Coder& coder, SurfaceModels& models, const SurfaceParameters& par
                         // The one met first is coded.
                         const GridPoint other = borderPoint(n, mate);
                         const unsigned otherBand = other.i % 2 == 0 ? Vertical : Horizontal;
-                        const bool isLater = otherBand < orientation ||
-                                             (otherBand == orientation &&
-                                              (other.j < j || (other.j == j && other.i < i)));
+                        const bool isLater =
+                            otherBand < orientation ||
+                            (otherBand == orientation && (other.j < j || (other.j == j && other.i < i)));
                         if (isLater) continue;
                     }
                 }
@@ -128,7 +130,8 @@ void codeSurface(Coder& coder, SurfaceModels& models, const SurfaceParameters& p
             std::memset(finer, 0, count * sizeof *finer);
             for (std::uint32_t j = 0; j < m; ++j)
                 for (std::uint32_t i = 0; i < m; ++i)
-                    finer[2 * j * std::size_t{n} + 2 * i] = coarser[j * std::size_t{m} + i] * kInverseAreaScale;
+                    finer[2 * j * std::size_t{n} + 2 * i] =
+                        coarser[j * std::size_t{m} + i] * kInverseAreaScale;
             inverseLifting(finer, n, level.border, work.border);
             std::memset(work.detail[c], 0, count * sizeof *finer);
             std::int32_t* coded = work.parents[c];

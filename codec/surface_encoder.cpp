@@ -21,7 +21,8 @@ struct EncoderMemory
 {
     explicit EncoderMemory(std::uint32_t grid)
     {
-        const std::size_t samples = std::size_t{grid} * grid, coarser = std::size_t{grid / 2 + 1} * (grid / 2 + 1);
+        const std::size_t samples = std::size_t{grid} * grid,
+                          coarser = std::size_t{grid / 2 + 1} * (grid / 2 + 1);
         for (unsigned c = 0; c < kComponents; ++c) {
             work.surface[c] = numbers(samples);
             work.detail[c] = numbers(samples);
@@ -59,12 +60,13 @@ public:
 
     bool isEmpty(unsigned orientation, unsigned component) const
     {
-        const double step = parameters_.step * (component == 0 ? 1 : tangentialRatio_) / parameters_.areaLimit;
+        const double step =
+            parameters_.step * (component == 0 ? 1 : tangentialRatio_) / parameters_.areaLimit;
         return exact_->largest[orientation] < kEmptyBelow * step;
     }
 
-    std::int32_t operator()(RangeEncoder& coder, const DetailContext& context, unsigned component, std::size_t index,
-                            const Frame& frame) const
+    std::int32_t operator()(RangeEncoder& coder, const DetailContext& context, unsigned component,
+                            std::size_t index, const Frame& frame) const
     {
         const Vector detail = {exact_->detail[0][index], exact_->detail[1][index], exact_->detail[2][index]};
         const double exact = dot(frame.axis[component], detail) / frame.step[component];
@@ -164,7 +166,8 @@ TransformedSurface SurfaceEncoder::transform(std::span<const float> samples) con
     return out;
 }
 
-CodedSurface SurfaceEncoder::encode(const TransformedSurface& surface, const SurfaceParameters& parameters) const
+CodedSurface SurfaceEncoder::encode(const TransformedSurface& surface,
+                                    const SurfaceParameters& parameters) const
 {
     std::vector<std::uint32_t> mates(classes_.size());
     const GluedBorder border(view(), grid_, classes_.data(), mates.data());

@@ -10,10 +10,10 @@ namespace gimg::codec {
 /// What a surface's chunk tells before its coded samples.
 struct SurfaceParameters
 {
-    double step = 1;                   ///< of details along the normal, where cells have their mean area
-    double areaLimit = 1.75;           ///< steps differ from that by at most this factor, both ways
-    unsigned rise = 2;                 ///< quarter octaves a level by which tangential steps grow over normal ones
-    unsigned most = 12;                ///< quarter octaves at which that ends
+    double step = 1;         ///< of details along the normal, where cells have their mean area
+    double areaLimit = 1.75; ///< steps differ from that by at most this factor, both ways
+    unsigned rise = 2;       ///< quarter octaves a level by which tangential steps grow over normal ones
+    unsigned most = 12;      ///< quarter octaves at which that ends
 };
 
 /// The ratio of tangential steps to normal ones at a level of details, 0 for the coarsest.
@@ -41,9 +41,9 @@ inline Vector cross(Vector a, Vector b)
 /// A level while its details are coded.
 struct SurfaceLevel
 {
-    std::uint32_t size = 0;   ///< samples a side, with the details
-    unsigned index = 0;       ///< 0 for the coarsest
-    double meanArea = 0;      ///< of a cell of the prediction
+    std::uint32_t size = 0; ///< samples a side, with the details
+    unsigned index = 0;     ///< 0 for the coarsest
+    double meanArea = 0;    ///< of a cell of the prediction
     double tangentialRatio = 1;
     const GluedBorder* border = nullptr; ///< nullptr: this level's details are not glued
 };
@@ -61,8 +61,8 @@ inline Vector sampleOf(const double* const (&planes)[kComponents], std::size_t a
     return {planes[0][at], planes[1][at], planes[2][at]};
 }
 
-/// Twice the derivatives of the prediction: central differences, across the seam too; at a border that is not glued,
-/// twice the one-sided one.
+/// Twice the derivatives of the prediction: central differences, across the seam too; at a border that is not
+/// glued, twice the one-sided one.
 struct Derivatives
 {
     Vector i, j;
@@ -115,7 +115,8 @@ inline double meanCellArea(const double* const (&planes)[kComponents], std::uint
 }
 
 inline Frame frameAt(const double* const (&planes)[kComponents], const SurfaceLevel& level,
-                     const SurfaceParameters& parameters, unsigned orientation, std::uint32_t i, std::uint32_t j)
+                     const SurfaceParameters& parameters, unsigned orientation, std::uint32_t i,
+                     std::uint32_t j)
 {
     Frame frame;
     const Derivatives d = derivativesAt(planes, level, i, j);
@@ -147,9 +148,9 @@ inline Frame frameAt(const double* const (&planes)[kComponents], const SurfaceLe
     const std::size_t at = j * std::size_t{n} + i;
     const auto pick = [&](std::size_t k) { return sampleOf(planes, k); };
     const Vector second = orientation == Horizontal ? pick(at + 1) + pick(at - 1) - 2.0 * pick(at)
-                          : orientation == Vertical ? pick(at + n) + pick(at - n) - 2.0 * pick(at)
-                                                    : pick(at + n + 1) + pick(at - n - 1) -
-                                                          (pick(at + n - 1) + pick(at - n + 1));
+                          : orientation == Vertical
+                              ? pick(at + n) + pick(at - n) - 2.0 * pick(at)
+                              : pick(at + n + 1) + pick(at - n - 1) - (pick(at + n - 1) + pick(at - n + 1));
     frame.bend = dot(second, frame.axis[0]) / frame.step[0];
     return frame;
 }

@@ -75,7 +75,7 @@ inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbou
     } else if (orientation == Diagonal) {
         siblings = at(q, -row) + at(q, row) + at(q, -1) + at(q, 1);
     }
-    siblingSign = orientation == Vertical ? q[-1 - row] - std::int64_t{q[1 - row]} - q[row - 1] + q[row + 1]
+    siblingSign = orientation == Vertical   ? q[-1 - row] - std::int64_t{q[1 - row]} - q[row - 1] + q[row + 1]
                   : orientation == Diagonal ? std::int64_t{q[-row]} + q[row] + q[-1] + q[1]
                                             : 0;
 
@@ -120,14 +120,17 @@ inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbou
 
     c.sign[0] = &models.signNear[orientation][third(q[-2])][third(q[-2 * row])][third(q[-2 * row - 2])]
                                 [third(q[-2 * row + 2])][direction];
-    c.sign[1] = &models.signFamily[orientation][third(parentSign)][thirdOf(siblingSign)][third(q[-2])][direction];
+    c.sign[1] =
+        &models.signFamily[orientation][third(parentSign)][thirdOf(siblingSign)][third(q[-2])][direction];
     c.sign[2] = &models.signBent[orientation][2 * (bent < 7 ? bent : 7) + (bend < 0 ? 1u : 0u)][direction];
-    c.sign[3] = &models.signParentNear[orientation][third(parentSign)][third(q[-4])][third(q[-4 * row])][direction];
+    c.sign[3] =
+        &models.signParentNear[orientation][third(parentSign)][third(q[-4])][third(q[-4 * row])][direction];
     c.signWeights = &models.signWeights[orientation][direction];
     return c;
 }
 
-template <class Coder> std::int32_t codeSurfaceDetail(Coder& coder, const DetailContext& context, std::int32_t value)
+template <class Coder>
+std::int32_t codeSurfaceDetail(Coder& coder, const DetailContext& context, std::int32_t value)
 {
     std::uint64_t magnitude = magnitudeOf(value);
     unsigned bit = 0;

@@ -155,8 +155,8 @@ private:
     const EncodeProgress& progress_;
 };
 
-Result<LossyFile> codeFor(const EncodeGoal& goal, const codec::Encoder& encoder, const SurfaceMeasure& measure,
-                          const EncodeProgress& progress)
+Result<LossyFile> codeFor(const EncodeGoal& goal, const codec::Encoder& encoder,
+                          const SurfaceMeasure& measure, const EncodeProgress& progress)
 {
     if (goal.target == EncodeTarget::Psnr) return PsnrSearch(encoder, measure, goal.psnr, progress).run();
     return judged(resultOf(encoder.encodeToBytes(goal.bytes)), measure);
@@ -317,7 +317,10 @@ private:
     static constexpr int kSlides = 10;
 
     const Mesh& mesh() const { return unfolded_.square.surface; }
-    GridSeam seam() const { return {unfolded_.square.lowest, unfolded_.square.start, unfolded_.square.seam()}; }
+    GridSeam seam() const
+    {
+        return {unfolded_.square.lowest, unfolded_.square.start, unfolded_.square.seam()};
+    }
 
     const Unfolded unfolded_;
     const FloatImage normals_;
@@ -450,7 +453,8 @@ Result<EncodedMesh> MeshEncoder::encodeAtAmpleGrid(const EncodeGoal& goal) const
     return encoded;
 }
 
-Result<LossyFile> MeshEncoder::Prepared::codeRaw(const GridEncoders::Sampled& sampled, const EncodeGoal& goal) const
+Result<LossyFile> MeshEncoder::Prepared::codeRaw(const GridEncoders::Sampled& sampled,
+                                                 const EncodeGoal& goal) const
 {
     codec::Settings settings;
     settings.coding = goal.target == EncodeTarget::Raw12 ? GIM_CODING_RAW12 : GIM_CODING_FLOAT;
@@ -467,8 +471,8 @@ Result<LossyFile> MeshEncoder::Prepared::codeSliding(const GridEncoders::Sampled
     if (!moved) return moved.error();
     Result<LossyFile> slid = codeFor(goal, *moved, measure, progress);
     if (!slid) return still;
-    const bool better = goal.target == EncodeTarget::Psnr ? slid->file.size() < still->file.size()
-                                                          : slid->psnr > still->psnr;
+    const bool better =
+        goal.target == EncodeTarget::Psnr ? slid->file.size() < still->file.size() : slid->psnr > still->psnr;
     return better ? std::move(slid) : std::move(still);
 }
 

@@ -15,9 +15,10 @@ constexpr double kLongestJump = 2;   // spacings from the target before
 
 template <class Body> void forEach(size_t count, const Body& body)
 {
-    tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 256), [&](const tbb::blocked_range<size_t>& range) {
-        for (size_t k = range.begin(); k < range.end(); ++k) body(k);
-    });
+    tbb::parallel_for(tbb::blocked_range<size_t>(0, count, 256),
+                      [&](const tbb::blocked_range<size_t>& range) {
+                          for (size_t k = range.begin(); k < range.end(); ++k) body(k);
+                      });
 }
 
 Vec3 areaVector(const std::vector<Vec3>& x, const Triangle& t)
@@ -105,7 +106,8 @@ void SampleSlide::keepCellsUnfolded(const std::vector<Vec3>& before, std::vector
     for (bool any = true; any;) {
         any = false;
         for (const Triangle& t : faces) {
-            if (after[t[0]] == before[t[0]] && after[t[1]] == before[t[1]] && after[t[2]] == before[t[2]]) continue;
+            if (after[t[0]] == before[t[0]] && after[t[1]] == before[t[1]] && after[t[2]] == before[t[2]])
+                continue;
             const Vec3 was = areaVector(before, t);
             if (areaVector(after, t).dot(was) > 0 || was.isZero(0)) continue;
             for (const int v : t) after[v] = before[v];

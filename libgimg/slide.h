@@ -20,12 +20,12 @@ struct SlideSurface
 };
 
 /// Lets the samples of a geometry image slide while they are coded. Where along the surface a sample lies
-/// hardly matters for the surface, but costs bytes: so it is coded, and the point of the mesh nearest to where the
-/// decoder puts it becomes its new target.
+/// hardly matters for the surface, but costs bytes: so it is coded, and the point of the mesh nearest to
+/// where the decoder puts it becomes its new target.
 ///
 /// Fitted samples lie a little off the mesh, on the outer side where it bulges; they keep that distance.
-/// Samples on the surface's own boundary stay where they are, and a sample that would jump, come to face the other
-/// way or fold a cell over keeps its target.
+/// Samples on the surface's own boundary stay where they are, and a sample that would jump, come to face the
+/// other way or fold a cell over keeps its target.
 class SampleSlide
 {
 public:
