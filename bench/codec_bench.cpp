@@ -53,7 +53,7 @@ const Stages* stages()
         const bool sound =
             images.ok() &&
             format::readContents({file->data(), file->size()}, &contents) == format::ReadStatus::Ok &&
-            codec::readImageHeader(contents.geometry.content, &header) == format::ReadStatus::Ok;
+            codec::readImageHeader(contents.geometry.content, codec::ImageKind::Geometry, &header) == format::ReadStatus::Ok;
         if (!sound) return std::nullopt;
         std::vector<std::uint32_t> classes = classesOf(*file, images->info);
         return Stages{*file, std::move(*images), header, std::move(classes)};

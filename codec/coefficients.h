@@ -209,7 +209,8 @@ void codeImage(Coder& coder, CoefficientModels& models, QuantizedImage& image, P
 
 namespace detail {
 
-template <class Coder> void codeCoarse(Coder& coder, CoefficientModels& models, QuantizedImage& image)
+template <class Coder>
+void codeCoarse(Coder& coder, ExpGolombModels<kCoarseBits>& models, QuantizedImage& image)
 {
     for (unsigned c = 0; c < kComponents; ++c) {
         for (unsigned k = 0; k < kCoarsest * kCoarsest; ++k) {
@@ -227,7 +228,7 @@ template <class Coder> void codeCoarse(Coder& coder, CoefficientModels& models, 
                 if (bits > kCoarseBits) return coder.fail();
                 magnitude = codeRaw(coder, bits, magnitude);
             } else {
-                magnitude = codeExpGolomb(coder, models.coarse, magnitude);
+                magnitude = codeExpGolomb(coder, models, magnitude);
             }
             if (magnitude != 0) {
                 const bool negative = coder.raw(1, difference < 0 ? 1 : 0) != 0;
@@ -290,7 +291,7 @@ template <class Coder, class Pick, class IsEmpty>
 void codeImage(Coder& coder, CoefficientModels& models, QuantizedImage& image, Pick& pick, IsEmpty& isEmpty,
                std::int32_t* scratch)
 {
-    detail::codeCoarse(coder, models, image);
+    detail::codeCoarse(coder, models.coarse, image);
     const std::size_t pitch = image.grid;
     unsigned level = 0;
     for (std::uint32_t m = kCoarsest; 2 * m - 1 <= image.grid && !coder.failed(); m = 2 * m - 1, ++level) {

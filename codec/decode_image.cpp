@@ -2,10 +2,12 @@
 #include "fuse.h"
 #include "image_header.h"
 #include "range_decoder.h"
+#include "surface_code.h"
 
 #include <cmath>
 #include <cstring>
 #include <new>
+#include <type_traits>
 #include <zlib.h>
 
 namespace gimg::codec {
@@ -66,6 +68,76 @@ ReadStatus decodeWavelet(const ImageHeader& header, const std::uint32_t* classes
             out[kComponents * k + c] = static_cast<float>(value);
         }
     }
+    return ReadStatus::Ok;
+}
+
+// The memory a surface is decoded in.
+struct SurfaceMemory
+{
+    static std::uint64_t size(std::uint32_t grid)
+    {
+        return 2 * kComponents *
+                   (Arena::sizeOf<double>(samplesOf(grid)) + Arena::sizeOf<std::int32_t>(codedSize(grid))) +
+               kComponents * Arena::sizeOf<double>(coarseSamplesOf(grid)) +
+               Arena::sizeOf<double>(2 * std::size_t{borderSize(grid)}) +
+               Arena::sizeOf<std::uint32_t>(borderSize(grid)) + Arena::sizeOf<SurfaceModels>(1);
+    }
+
+    bool take(Arena& arena, std::uint32_t grid)
+    {
+        bool all = true;
+        const auto need = [&](auto*& piece, std::size_t count) {
+            piece = arena.take<std::remove_reference_t<decltype(*piece)>>(count);
+            all = all && piece != nullptr;
+        };
+        for (unsigned c = 0; c < kComponents; ++c) {
+            need(work.surface[c], samplesOf(grid));
+            need(work.detail[c], samplesOf(grid));
+            need(work.coarse[c], coarseSamplesOf(grid));
+            need(work.coded[c], codedSize(grid));
+            need(work.parents[c], codedSize(grid));
+        }
+        need(work.border, 2 * std::size_t{borderSize(grid)});
+        need(mates, borderSize(grid));
+        need(models, 1);
+        return all;
+    }
+
+    SurfaceWork work;
+    std::uint32_t* mates;
+    SurfaceModels* models;
+};
+
+struct PlainDetails
+{
+    void begin(const SurfaceLevel&) const {}
+    bool isEmpty(unsigned, unsigned) const { return false; }
+    std::int32_t operator()(RangeDecoder& decoder, const DetailContext& context, unsigned, std::size_t,
+                            const Frame&) const
+    {
+        return codeSurfaceDetail(decoder, context, 0);
+    }
+};
+
+ReadStatus decodeSurface(const ImageHeader& header, const SeamView& seam, const std::uint32_t* classes,
+                         Arena& arena, float* out)
+{
+    SurfaceMemory memory;
+    if (!memory.take(arena, header.grid)) return ReadStatus::Misuse;
+    const GluedBorder border(seam, header.grid, classes, memory.mates);
+    new (memory.models) SurfaceModels();
+    RangeDecoder decoder(header.samples);
+    QuantizedImage coarse;
+    const PlainDetails pick;
+    codeSurface(decoder, *memory.models, surfaceParameters(header), border, coarse, memory.work, pick);
+    if (!decoder.finished()) return ReadStatus::Corrupt;
+    const std::size_t samples = samplesOf(header.grid);
+    for (unsigned c = 0; c < kComponents; ++c)
+        for (std::size_t k = 0; k < samples; ++k) {
+            const double value = memory.work.surface[c][k];
+            if (!(value <= kLargestFloat && value >= -kLargestFloat)) return ReadStatus::Corrupt;
+            out[kComponents * k + c] = static_cast<float>(value);
+        }
     return ReadStatus::Ok;
 }
 
@@ -157,20 +229,35 @@ void copyFirstOfClass(float* out, std::uint32_t grid, const std::uint32_t* class
 
 } // namespace
 
-ReadStatus readImageHeader(format::ByteSpan content, ImageHeader* header)
+SurfaceParameters surfaceParameters(const ImageHeader& header)
+{
+    SurfaceParameters parameters;
+    parameters.step = static_cast<double>(header.step);
+    parameters.rise = header.ratios & 0x0Fu;
+    parameters.most = 2 * (header.ratios >> 4);
+    parameters.areaLimit = 1 + header.areaLimit / 16.0;
+    return parameters;
+}
+
+ReadStatus readImageHeader(format::ByteSpan content, ImageKind image, ImageHeader* header)
 {
     // The chunk is known to be complete: what is missing inside it is an error of its own.
     format::Reader in(content);
     const std::uint8_t kind = in.u8();
     if (in.failed()) return ReadStatus::Corrupt;
     const unsigned exponent = kind & 0x0Fu, coding = kind >> 4 & 0x03u;
-    if (kind >> 6 != 0 || coding == 3) return ReadStatus::Unsupported;
+    if (kind >> 6 != 0) return ReadStatus::Unsupported;
+    if (coding == GIM_CODING_SURFACE && image != ImageKind::Geometry) return ReadStatus::Unsupported;
     if (exponent == 0 || exponent > kLargestExponent) return ReadStatus::Unsupported;
     header->grid = (1u << exponent) + 1;
     header->coding = static_cast<gim_coding>(coding);
     if (header->coding == GIM_CODING_WAVELET) {
         header->step = in.f32();
         header->shifts = in.u8();
+    } else if (header->coding == GIM_CODING_SURFACE) {
+        header->step = in.f32();
+        header->ratios = in.u8();
+        header->areaLimit = in.u8();
     } else if (header->coding == GIM_CODING_RAW12) {
         for (float& least : header->least) least = in.f32();
         header->step = in.f32();
@@ -214,16 +301,20 @@ std::uint64_t imageWorkspace(const ImageHeader& header)
     if (header.coding == GIM_CODING_FLOAT)
         return Arena::sizeOf<std::uint8_t>(4 * kComponents * samples) +
                Arena::sizeOf<std::uint8_t>(kInflateMemory);
+    if (header.coding == GIM_CODING_SURFACE) return SurfaceMemory::size(header.grid);
     return kComponents * Arena::sizeOf<std::int32_t>(samples) +
            Arena::sizeOf<std::int32_t>(rowScratchOf(header.grid)) + Arena::sizeOf<CoefficientModels>(1) +
            Arena::sizeOf<double>(samples) + Arena::sizeOf<double>(coarseSamplesOf(header.grid)) +
            Arena::sizeOf<double>(2 * std::size_t{borderSize(header.grid)});
 }
 
-ReadStatus decodeImage(const ImageHeader& header, const std::uint32_t* classes, bool diffuse, Arena& arena,
-                       float* out)
+ReadStatus decodeImage(const ImageHeader& header, const SeamView& seam, const std::uint32_t* classes,
+                       std::uint32_t flags, Arena& arena, float* out)
 {
-    if (header.coding == GIM_CODING_WAVELET) return decodeWavelet(header, classes, diffuse, arena, out);
+    if (header.coding == GIM_CODING_SURFACE) return decodeSurface(header, seam, classes, arena, out);
+    if ((flags & GIM_NO_FUSE) != 0) classes = nullptr;
+    if (header.coding == GIM_CODING_WAVELET)
+        return decodeWavelet(header, classes, (flags & GIM_NO_DIFFUSE) == 0, arena, out);
     const ReadStatus status =
         header.coding == GIM_CODING_RAW12 ? decodeRaw12(header, out) : decodeFloat(header, arena, out);
     if (status == ReadStatus::Ok && classes != nullptr) copyFirstOfClass(out, header.grid, classes);

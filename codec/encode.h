@@ -2,8 +2,10 @@
 
 #include "forward.h"
 #include "seam.h"
+#include "surface_encoder.h"
 
 #include <cstddef>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <span>
@@ -24,10 +26,15 @@ struct Source
 
 struct Settings
 {
-    gim_coding coding = GIM_CODING_WAVELET;
-    float step = 0;       ///< wavelet only: quantisation step, in the surface's units
-    float normalStep = 0; ///< wavelet only, with normals: the same for them
+    gim_coding coding =
+        GIM_CODING_SURFACE; ///< of the geometry; normals that go with a surface are wavelet coded
+    float step = 0;         ///< surface, wavelet: quantisation step, in the surface's units
+    float normalStep = 0;   ///< the same for the normals, if there are any
 };
+
+/// Moves samples along the surface: it is given what a decoder will make of them, and changes the targets
+/// that it was to come near, 3 grid^2 numbers each. Glued targets must stay equal.
+using Retarget = std::function<void(std::span<const float> decoded, std::span<float> targets)>;
 
 struct EncodedFile
 {
@@ -62,19 +69,30 @@ public:
     /// BadSettings: a step that is not positive, or too small for the coefficients' range.
     Outcome<EncodedFile> encode(const Settings& settings) const;
 
-    /// The best wavelet file of at most `target` bytes; at most max(1 %, 24 bytes) smaller.
+    /// The encoder of samples that have slid: `rounds` times the surface is coded at the step and its targets
+    /// are moved. What slides along the surface need not be coded, so that a file of the same size comes
+    /// nearer.
+    Outcome<Encoder> slid(float step, int rounds, const Retarget& retarget) const;
+
+    /// The best file with a surface coded in at most `target` bytes; at most max(1 %, 24 bytes) smaller.
     /// Normals get a quarter of the bytes that are neither container nor seam.
     /// TooSmall, TooLarge: see EncodeError.
     Outcome<EncodedFile> encodeToBytes(std::size_t target) const;
 
+    /// The geometry's samples, as given or slid.
+    std::span<const float> samples() const { return xyz_; }
+
     /// Diagonal of the geometry's bounding box; steps are best thought of as fractions of it.
-    double diagonal() const { return geometry_.diagonal; }
+    double diagonal() const { return surface_.diagonal; }
 
 private:
+    Encoder(const Source& source);
+
     Seam seam_;
     std::vector<std::uint8_t> word_;
     std::vector<float> xyz_, normals_;
-    TransformedImage geometry_;
+    std::shared_ptr<const SurfaceEncoder> surfaceEncoder_;
+    TransformedSurface surface_;
     std::optional<TransformedImage> normalImage_;
 };
 

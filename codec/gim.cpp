@@ -85,10 +85,10 @@ ReadStatus openFile(const void* bytes, std::size_t size, const gim_limits* limit
     ReadStatus status = readContents({static_cast<const std::uint8_t*>(bytes), size}, &file->contents);
     if (status != ReadStatus::Ok) return status;
 
-    status = readImageHeader(file->contents.geometry.content, &file->geometry);
+    status = readImageHeader(file->contents.geometry.content, ImageKind::Geometry, &file->geometry);
     if (status != ReadStatus::Ok) return status;
     if (file->contents.normals.type != 0) {
-        status = readImageHeader(file->contents.normals.content, &file->normals);
+        status = readImageHeader(file->contents.normals.content, ImageKind::Normals, &file->normals);
         if (status != ReadStatus::Ok) return status;
     }
 
@@ -127,15 +127,15 @@ ReadStatus readSeam(const File& file, Arena& arena, SeamView* seam, std::uint32_
 }
 
 /// Decodes the seam and the classes of a grid's border.
-ReadStatus readClasses(const File& file, std::uint32_t grid, Arena& arena, const std::uint32_t** classes)
+ReadStatus readClasses(const File& file, std::uint32_t grid, Arena& arena, SeamView* seam,
+                       const std::uint32_t** classes)
 {
-    SeamView seam;
     std::uint32_t* scratch = nullptr;
-    const ReadStatus status = readSeam(file, arena, &seam, &scratch);
+    const ReadStatus status = readSeam(file, arena, seam, &scratch);
     if (status != ReadStatus::Ok) return status;
     auto* out = arena.take<std::uint32_t>(borderSize(grid));
     if (out == nullptr) return ReadStatus::Misuse;
-    borderClasses(seam, grid, scratch, out);
+    borderClasses(*seam, grid, scratch, out);
     *classes = out;
     return ReadStatus::Ok;
 }
@@ -146,11 +146,11 @@ ReadStatus decode(const File& file, const ImageHeader& header, std::uint32_t fla
     if (workspace == nullptr || out == nullptr || workspaceSize < file.workspace) return ReadStatus::Misuse;
     if ((flags & ~(GIM_NO_FUSE | GIM_NO_DIFFUSE)) != 0) return ReadStatus::Misuse;
     Arena arena(workspace, workspaceSize);
+    SeamView seam;
     const std::uint32_t* classes = nullptr;
-    const ReadStatus status = readClasses(file, header.grid, arena, &classes);
+    const ReadStatus status = readClasses(file, header.grid, arena, &seam, &classes);
     if (status != ReadStatus::Ok) return status;
-    if ((flags & GIM_NO_FUSE) != 0) classes = nullptr;
-    return decodeImage(header, classes, (flags & GIM_NO_DIFFUSE) == 0, arena, out);
+    return decodeImage(header, seam, classes, flags, arena, out);
 }
 
 /// A level of detail, with the classes of its border.
@@ -167,7 +167,8 @@ ReadStatus openLevel(const File& file, std::uint32_t flags, std::uint32_t level,
     if ((flags & ~(GIM_NO_FUSE | GIM_NO_DIFFUSE)) != 0 || level >= file.levels) return ReadStatus::Misuse;
     out->stride = 1u << level;
     out->grid = (file.geometry.grid - 1) / out->stride + 1;
-    const ReadStatus status = readClasses(file, out->grid, arena, &out->classes);
+    SeamView seam;
+    const ReadStatus status = readClasses(file, out->grid, arena, &seam, &out->classes);
     if (status != ReadStatus::Ok) return status;
     const std::uint32_t samples = out->grid * out->grid, border = borderSize(out->grid);
     if ((flags & GIM_NO_FUSE) != 0) out->classes = nullptr;

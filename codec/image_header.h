@@ -3,10 +3,17 @@
 #include "format/bytes.h"
 #include "gim.h"
 #include "quantizer.h"
+#include "surface_frame.h"
 
 namespace gimg::codec {
 
 using format::ReadStatus;
+
+enum class ImageKind
+{
+    Geometry,
+    Normals,
+};
 
 constexpr unsigned kLargestExponent = 12; ///< 4097 samples a side
 
@@ -17,16 +24,22 @@ struct ImageHeader
     gim_coding coding = GIM_CODING_WAVELET;
     float step = 0;                ///< wavelet: quantisation step; raw12: distance of neighbouring integers
     std::uint8_t shifts = 0;       ///< wavelet: see Dequantizer
+    std::uint8_t ratios = 0;       ///< surface: see surfaceParameters()
+    std::uint8_t areaLimit = 0;    ///< surface: likewise
     float least[kComponents] = {}; ///< raw12: what integer 0 stands for
     format::ByteSpan samples;      ///< the coded samples
     std::size_t fixedBytes = 0;
 };
 
 /// Reads and checks the fixed fields of a geometry or normal chunk.
-ReadStatus readImageHeader(format::ByteSpan content, ImageHeader* header);
+ReadStatus readImageHeader(format::ByteSpan content, ImageKind kind, ImageHeader* header);
 
 /// Bytes of `samples` raw12 coding takes.
 constexpr std::uint64_t raw12Size(std::uint64_t grid) { return (grid * grid * kComponents * 12 + 7) / 8; }
+
+/// What the fixed fields of a surface's chunk mean. The low nibble of `ratios` is SurfaceParameters::rise,
+/// the high one half of SurfaceParameters::most; `areaLimit` is in sixteenths above 1.
+SurfaceParameters surfaceParameters(const ImageHeader& header);
 
 /// Bytes that decodeImage() takes from its arena.
 std::uint64_t imageWorkspace(const ImageHeader& header);
@@ -38,9 +51,10 @@ class Arena;
 ReadStatus decodeCoefficients(const ImageHeader& header, Arena& arena, QuantizedImage* image);
 
 /// Decodes an image of three components into 3 grid^2 floats.
-/// @param classes  borderClasses() of the grid, or nullptr not to fuse
-ReadStatus decodeImage(const ImageHeader& header, const std::uint32_t* classes, bool diffuse, Arena& arena,
-                       float* out);
+/// @param classes  borderClasses() of the grid
+/// @param flags    GIM_NO_FUSE, GIM_NO_DIFFUSE
+ReadStatus decodeImage(const ImageHeader& header, const SeamView& seam, const std::uint32_t* classes,
+                       std::uint32_t flags, Arena& arena, float* out);
 
 /// Makes vectors as long as 1; a zero vector becomes (0, 0, 1).
 void normalize(float* vectors, std::size_t count);

@@ -48,6 +48,13 @@ struct StretchTable
 };
 inline constexpr StretchTable kStretch{};
 
+constexpr int clampStretch(std::int64_t sum)
+{
+    return sum > kStretchLimit    ? kStretchLimit
+           : sum < -kStretchLimit ? -kStretchLimit
+                                  : static_cast<int>(sum);
+}
+
 /// Weights of `Count` estimates, in units of 2^-16.
 template <unsigned Count> struct MixWeights
 {
@@ -59,6 +66,15 @@ template <unsigned Count> struct MixWeights
     }
 
     static constexpr std::int32_t kStart = static_cast<std::int32_t>(65536 * 13 / 10 / Count);
+
+    void learn(const int (&stretched)[Count], int error)
+    {
+        for (unsigned k = 0; k < Count; ++k) {
+            const std::int32_t moved =
+                weight[k] + ((stretched[k] * error + (1 << (kMixShift - 1))) >> kMixShift);
+            weight[k] = moved > kMixLimit ? kMixLimit : moved < -kMixLimit ? -kMixLimit : moved;
+        }
+    }
 };
 
 /// One bit whose probability is mixed from the models' estimates. Bits are coded as
@@ -82,6 +98,29 @@ bool codeMixed(Coder& coder, BitModel* const (&models)[Count], MixWeights<Count>
         weights.weight[k] = moved > kMixLimit ? kMixLimit : moved < -kMixLimit ? -kMixLimit : moved;
         models[k]->update(one);
     }
+    return one;
+}
+
+/// The same with two sets of weights, chosen by different contexts, whose results are averaged before
+/// squash(). Each set learns from its own error.
+template <unsigned Count, class Coder>
+bool codeMixed(Coder& coder, BitModel* const (&models)[Count], MixWeights<Count>& first,
+               MixWeights<Count>& second, bool bit)
+{
+    int stretched[Count];
+    std::int64_t sums[2] = {};
+    for (unsigned k = 0; k < Count; ++k) {
+        stretched[k] = kStretch.value[models[k]->zero() >> 3];
+        sums[0] += std::int64_t{first.weight[k]} * stretched[k];
+        sums[1] += std::int64_t{second.weight[k]} * stretched[k];
+    }
+    const int parts[2] = {clampStretch(sums[0] >> 16), clampStretch(sums[1] >> 16)};
+    const bool one = coder.code(squash((parts[0] + parts[1]) >> 1), bit);
+    if (!Coder::kAdapts) return one;
+    const int target = one ? 0 : 1 << kProbabilityBits;
+    first.learn(stretched, target - static_cast<int>(squash(parts[0])));
+    second.learn(stretched, target - static_cast<int>(squash(parts[1])));
+    for (unsigned k = 0; k < Count; ++k) models[k]->update(one);
     return one;
 }
 

@@ -6,6 +6,7 @@
 #include "gimg/fit.h"
 #include "gimg/sample.h"
 #include "gimg/unfold.h"
+#include "slide.h"
 
 #include <tbb/global_control.h>
 
@@ -51,10 +52,17 @@ Error fromCodec(const codec::EncodeError& error)
     return {target ? ErrorKind::TargetUnreachable : ErrorKind::BadArgument, error.message};
 }
 
-Result<std::vector<uint8_t>> fileOf(codec::Outcome<codec::EncodedFile> outcome)
+template <class T> Result<T> resultOf(codec::Outcome<T> outcome)
 {
     if (auto* error = std::get_if<codec::EncodeError>(&outcome)) return fromCodec(*error);
-    return std::move(std::get<codec::EncodedFile>(outcome).bytes);
+    return std::move(std::get<T>(outcome));
+}
+
+Result<std::vector<uint8_t>> fileOf(codec::Outcome<codec::EncodedFile> outcome)
+{
+    Result<codec::EncodedFile> file = resultOf(std::move(outcome));
+    if (!file) return file.error();
+    return std::move(file->bytes);
 }
 
 Result<double> decodedPsnr(const std::vector<uint8_t>& file, const SurfaceMeasure& measure)
@@ -73,6 +81,21 @@ Result<double> decodedPsnr(const std::vector<uint8_t>& file, const SurfaceMeasur
 // Normals are judged by eye, not by distance: their step is the same at any quality of the surface.
 constexpr float kNormalStep = 1.0f / 32;
 
+struct LossyFile
+{
+    std::vector<uint8_t> file;
+    float step;
+    double psnr;
+};
+
+Result<LossyFile> judged(Result<codec::EncodedFile> encoded, const SurfaceMeasure& measure)
+{
+    if (!encoded) return encoded.error();
+    const Result<double> psnr = decodedPsnr(encoded->bytes, measure);
+    if (!psnr) return psnr.error();
+    return LossyFile{std::move(encoded->bytes), encoded->step, *psnr};
+}
+
 // Searches the coarsest step that reaches the target: the quality falls by about 5 dB when the step doubles,
 // which tells where to try next; bisection wherever that leaves the bracket.
 class PsnrSearch
@@ -84,13 +107,13 @@ public:
     {
     }
 
-    Result<std::vector<uint8_t>> run()
+    Result<LossyFile> run()
     {
         constexpr double kFinest = 0x1p-20, kCoarsest = 0x1p8; // of the diagonal
         constexpr double kWindow = 0.5, kAim = 0.1;            // dB above the target
         constexpr int kMostSteps = 24;
         double fine = std::log(kFinest), coarse = std::log(kCoarsest);
-        Result<Trial> kept = attempt(fine);
+        Result<LossyFile> kept = attempt(fine);
         if (!kept) return kept.error();
         if (kept->psnr < psnr_)
             return Error{ErrorKind::TargetUnreachable,
@@ -99,7 +122,7 @@ public:
         double next = -psnr_ / 20 * std::log(10.0);
         for (int i = 0; i < kMostSteps && kept->psnr > psnr_ + 2 * kAim && coarse - fine > 1e-6; ++i) {
             if (!(next > fine && next < coarse)) next = 0.5 * (fine + coarse);
-            Result<Trial> trial = attempt(next);
+            Result<LossyFile> trial = attempt(next);
             if (!trial) return trial.error();
             if (progress_) progress_("code", (i + 1.0) / kMostSteps);
             const double excess = trial->psnr - psnr_;
@@ -114,26 +137,16 @@ public:
         if (kept->psnr > psnr_ + kWindow)
             return Error{ErrorKind::TargetUnreachable, "no file is within 0.5 dB of " + decibels(psnr_) +
                                                            "; the nearest above has " + decibels(kept->psnr)};
-        return std::move(kept->file);
+        return std::move(*kept);
     }
 
 private:
-    struct Trial
-    {
-        std::vector<uint8_t> file;
-        double psnr;
-    };
-
-    Result<Trial> attempt(double logStep)
+    Result<LossyFile> attempt(double logStep)
     {
         codec::Settings settings;
         settings.step = static_cast<float>(std::exp(logStep) * encoder_.diagonal());
         settings.normalStep = kNormalStep;
-        Result<std::vector<uint8_t>> file = fileOf(encoder_.encode(settings));
-        if (!file) return file.error();
-        const Result<double> psnr = decodedPsnr(*file, measure_);
-        if (!psnr) return psnr.error();
-        return Trial{std::move(*file), *psnr};
+        return judged(resultOf(encoder_.encode(settings)), measure_);
     }
 
     const codec::Encoder& encoder_;
@@ -142,23 +155,11 @@ private:
     const EncodeProgress& progress_;
 };
 
-Result<std::vector<uint8_t>> code(const codec::Encoder& encoder, const SurfaceMeasure& measure,
-                                  const EncodeGoal& goal, const EncodeProgress& progress)
+Result<LossyFile> codeFor(const EncodeGoal& goal, const codec::Encoder& encoder,
+                          const SurfaceMeasure& measure, const EncodeProgress& progress)
 {
-    codec::Settings settings;
-    switch (goal.target) {
-    case EncodeTarget::Bytes:
-        return fileOf(encoder.encodeToBytes(goal.bytes));
-    case EncodeTarget::Psnr:
-        return PsnrSearch(encoder, measure, goal.psnr, progress).run();
-    case EncodeTarget::Raw12:
-        settings.coding = GIM_CODING_RAW12;
-        break;
-    case EncodeTarget::RawFloat:
-        settings.coding = GIM_CODING_FLOAT;
-        break;
-    }
-    return fileOf(encoder.encode(settings));
+    if (goal.target == EncodeTarget::Psnr) return PsnrSearch(encoder, measure, goal.psnr, progress).run();
+    return judged(resultOf(encoder.encodeToBytes(goal.bytes)), measure);
 }
 
 // Samples are float32: what they cannot hold is refused, what they hold badly is said.
@@ -287,6 +288,7 @@ public:
     struct Sampled
     {
         codec::Encoder encoder;
+        FloatImage geometry, normals;
         double seamLength;
         std::optional<Fitted> fit;
         double sampleSeconds, fitSeconds;
@@ -315,16 +317,47 @@ public:
         const double fitSeconds = watch.lap();
         Result<codec::Encoder> encoder = encoderOf(unfolded_.square, grid, *geometry, normals);
         if (!encoder) return encoder.error();
-        made = std::make_shared<const Sampled>(Sampled{std::move(*encoder),
-                                                       gimg::seamLength(unfolded_.square, *geometry), fit,
-                                                       sampleSeconds, fitSeconds});
+        const double length = gimg::seamLength(unfolded_.square, *geometry);
+        made = std::make_shared<const Sampled>(Sampled{std::move(*encoder), std::move(*geometry),
+                                                       std::move(normals), length, fit, sampleSeconds,
+                                                       fitSeconds});
         return made;
     }
 
+    /// The encoder of samples that slid while they were coded at a step.
+    Result<codec::Encoder> slid(const Sampled& sampled, float step)
+    {
+        const std::lock_guard lock(mutex_);
+        if (!surface_) {
+            Result<SlideSurface> made = SlideSurface::of(mesh());
+            if (!made) return made.error();
+            surface_ = std::make_shared<const SlideSurface>(std::move(*made));
+        }
+        Result<SampleSlide> slide = SampleSlide::of(surface_, seam(), sampled.geometry);
+        if (!slide) return slide.error();
+        Result<codec::Encoder> encoder = resultOf(sampled.encoder.slid(step, kSlides, *slide));
+        if (!encoder || sampled.normals.width == 0) return encoder;
+        // Normals belong to where the samples are now.
+        FloatImage moved = sampled.geometry;
+        moved.samples.assign(encoder->samples().begin(), encoder->samples().end());
+        const Result<FloatImage> normals = fitNormals(mesh(), moved, seam(), sampled.normals);
+        if (!normals) return normals.error();
+        return encoderOf(unfolded_.square, moved.width, moved, *normals);
+    }
+
 private:
+    static constexpr int kSlides = 10;
+
+    const Mesh& mesh() const { return unfolded_.square.surface; }
+    GridSeam seam() const
+    {
+        return {unfolded_.square.lowest, unfolded_.square.start, unfolded_.square.seam()};
+    }
+
     const Unfolded unfolded_;
     const FloatImage normals_;
     const bool fit_, features_;
+    std::shared_ptr<const SlideSurface> surface_;
     std::mutex mutex_;
     std::map<std::pair<int, bool>, std::shared_ptr<const Sampled>> made_;
 };
@@ -355,6 +388,9 @@ struct MeshEncoder::Prepared
     SurfaceMeasure measure;
     EncodeProgress progress;
     int threads;
+
+    Result<LossyFile> codeRaw(const GridEncoders::Sampled& sampled, const EncodeGoal& goal) const;
+    Result<LossyFile> codeSliding(const GridEncoders::Sampled& sampled, const EncodeGoal& goal) const;
 };
 
 MeshEncoder::MeshEncoder(std::unique_ptr<const Prepared> prepared) : prepared_(std::move(prepared)) {}
@@ -468,17 +504,39 @@ Result<EncodedMesh> MeshEncoder::encodeAtAmpleGrid(const EncodeGoal& goal) const
     return encoded;
 }
 
+Result<LossyFile> MeshEncoder::Prepared::codeRaw(const GridEncoders::Sampled& sampled,
+                                                 const EncodeGoal& goal) const
+{
+    codec::Settings settings;
+    settings.coding = goal.target == EncodeTarget::Raw12 ? GIM_CODING_RAW12 : GIM_CODING_FLOAT;
+    return judged(resultOf(sampled.encoder.encode(settings)), measure);
+}
+
+// The samples slide for the step that reaches the goal without.
+Result<LossyFile> MeshEncoder::Prepared::codeSliding(const GridEncoders::Sampled& sampled,
+                                                     const EncodeGoal& goal) const
+{
+    Result<LossyFile> still = codeFor(goal, sampled.encoder, measure, progress);
+    if (!still) return still;
+    const Result<codec::Encoder> moved = encoders->slid(sampled, still->step);
+    if (!moved) return moved.error();
+    Result<LossyFile> slid = codeFor(goal, *moved, measure, progress);
+    if (!slid) return still;
+    const bool better =
+        goal.target == EncodeTarget::Psnr ? slid->file.size() < still->file.size() : slid->psnr > still->psnr;
+    return better ? std::move(slid) : std::move(still);
+}
+
 Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal, bool lossy) const
 {
     Stopwatch watch;
     const auto sampled = prepared_->encoders->at(grid, lossy, prepared_->measure);
     if (!sampled) return sampled.error();
     watch.lap();
-    Result<std::vector<uint8_t>> file =
-        code((*sampled)->encoder, prepared_->measure, goal, prepared_->progress);
-    if (!file) return file.error();
-    const Result<double> psnr = decodedPsnr(*file, prepared_->measure);
-    if (!psnr) return psnr.error();
+    Result<LossyFile> coded = goal.target == EncodeTarget::Raw12 || goal.target == EncodeTarget::RawFloat
+                                  ? prepared_->codeRaw(**sampled, goal)
+                                  : prepared_->codeSliding(**sampled, goal);
+    if (!coded) return coded.error();
 
     EncodedMesh out = prepared_->report;
     out.grid = grid;
@@ -489,8 +547,8 @@ Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal, bool
     }
     out.seconds.sample += (*sampled)->sampleSeconds;
     out.seconds.fit = (*sampled)->fitSeconds;
-    out.file = std::move(*file);
-    out.psnr = *psnr;
+    out.file = std::move(coded->file);
+    out.psnr = coded->psnr;
     if (prepared_->features)
         if (std::string what = objectionToFeatures(out); !what.empty())
             out.warnings.push_back(std::move(what));

@@ -23,6 +23,8 @@ const char* nameOf(gim_coding coding)
         return "raw12";
     case GIM_CODING_FLOAT:
         return "float";
+    case GIM_CODING_SURFACE:
+        return "surface";
     }
     return "unknown";
 }

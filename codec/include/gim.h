@@ -65,9 +65,11 @@ typedef struct gim_limits {
 } gim_limits;
 
 typedef enum gim_coding {
-    GIM_CODING_WAVELET = 0, /* lossy: wavelet coefficients, quantised with one step */
+    GIM_CODING_WAVELET = 0, /* lossy: wavelet coefficients of each component, quantised with one step */
     GIM_CODING_RAW12 = 1,   /* 12-bit integers over a common cube */
-    GIM_CODING_FLOAT = 2    /* the float32 samples themselves, packed without loss */
+    GIM_CODING_FLOAT = 2,   /* the float32 samples themselves, packed without loss */
+    GIM_CODING_SURFACE = 3  /* lossy: wavelet coefficients along the surface's normals and tangents, across
+                               the seam; geometry only, and always fused */
 } gim_coding;
 
 typedef struct gim_info {

@@ -54,5 +54,19 @@ int main(int argc, char** argv)
     Source boundary =
         sourceOf(bumpy, 65, {17, 5, {{0, 12, 1}, {1, 10, 0}, {2, 8, 1}, {0, 12, 2}, {2, 8, 2}, {3, 14, 0}}});
     write(folder, "v1-wavelet-boundary", samples::encoded(boundary, {GIM_CODING_WAVELET, 0.02f, 0}));
+
+    write(folder, "v1-surface-genus3", samples::encoded(genus3, {GIM_CODING_SURFACE, 0.004f, 0}));
+    write(folder, "v1-surface-coarse-step", samples::encoded(genus3, {GIM_CODING_SURFACE, 0.3f, 0}));
+    write(folder, "v1-surface-fine-step", samples::encoded(genus3, {GIM_CODING_SURFACE, 2e-6f, 0}));
+    write(folder, "v1-surface-boundary", samples::encoded(boundary, {GIM_CODING_SURFACE, 0.02f, 0}));
+    write(folder, "v1-surface-3x3-disk",
+          samples::encoded(sourceOf(small, 3, samples::diskSeam(3)), {GIM_CODING_SURFACE, 0.01f, 0}));
+    write(folder, "v1-surface-torus-normals",
+          samples::encoded(withNormals, {GIM_CODING_SURFACE, 0.01f, 0.05f}));
+    // Each side folded onto itself, as an octahedron unfolds: glued down to the coarsest grid.
+    const Source folded = sourceOf(
+        bumpy, 65,
+        {17, 0, {{0, 8, 1}, {0, 8, 2}, {1, 8, 1}, {1, 8, 2}, {2, 8, 1}, {2, 8, 2}, {3, 8, 1}, {3, 8, 2}}});
+    write(folder, "v1-surface-folded", samples::encoded(folded, {GIM_CODING_SURFACE, 0.01f, 0}));
     return 0;
 }

@@ -140,6 +140,19 @@ class Decoder:
         return bit
 
 
+    def mixed_twice(self, models, first, second):
+        s = [STRETCH[m.estimate() >> 3] for m in models]
+        parts = [max(-2047, min(2047, sum(w * x for w, x in zip(weights, s)) >> 16)) for weights in (first, second)]
+        bit = self.with_probability(squash(sum(parts) >> 1))
+        for weights, part in zip((first, second), parts):
+            e = (0 if bit else 1 << 15) - squash(part)
+            for k in range(len(weights)):
+                weights[k] = max(-(1 << 20), min(1 << 20, weights[k] + ((s[k] * e + (1 << 14)) >> 15)))
+        for model in models:
+            model.update(bit)
+        return bit
+
+
 class ExpGolomb:
     def __init__(self, prefixes):
         self.more = [Model() for _ in range(prefixes)]
@@ -247,11 +260,13 @@ def f32(x):
 
 def read_image(content, seam, fuse, diffuse):
     kind = content[0]
-    demand(kind >> 6 == 0 and kind >> 4 != 3 and 1 <= (kind & 15) <= 12, "UNSUPPORTED")
+    demand(kind >> 6 == 0 and 1 <= (kind & 15) <= 12, "UNSUPPORTED")
     n = (1 << (kind & 15)) + 1
     coding = kind >> 4
     if coding == 0:
         return n, coding, read_wavelet(n, content[1:], seam, fuse, diffuse)
+    if coding == 3:
+        return n, coding, read_surface(n, content[1:], seam)
     if coding == 1:
         least, (step,) = struct.unpack_from("<3f", content, 1), struct.unpack_from("<f", content, 13)
         packed, out = content[17:], []
@@ -293,7 +308,7 @@ def sg(x):
     return (x > 0) - (x < 0)
 
 
-def read_coefficients(n, d):
+def read_coarse(d):
     coarse = [[0] * 9 for _ in range(3)]
     coarse_code = ExpGolomb(50)
     for c in range(3):
@@ -309,7 +324,11 @@ def read_coefficients(n, d):
                 magnitude = -magnitude
             coarse[c][k] = expected + magnitude
             demand(abs(coarse[c][k]) < 1 << 50)
+    return coarse
 
+
+def read_coefficients(n, d):
+    coarse = read_coarse(d)
     empty_models, magnitude_models, sign_models = Models(), Models(), Models()
     larger = Models(lambda: ExpGolomb(30))
     weights = Models(lambda: [65536 * 13 // 10 // 5] * 5)
@@ -423,6 +442,257 @@ def read_wavelet(n, content, seam, fuse, diffuse):
             for i in range(n):
                 out[3 * (j * n + i) + c] = f32(image[j][i])
     return out
+
+
+# --- section 5.4: surface
+
+def dot(a, b):
+    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+
+
+def cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def add(a, b):
+    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
+
+
+def sub(a, b):
+    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
+
+
+def times(f, a):
+    return (f * a[0], f * a[1], f * a[2])
+
+
+class Border:
+    def __init__(self, seam, n):
+        l, start, sides = seam
+        numbers = [1 << l, start] + [length for _, length, _ in sides]
+        z = 0
+        while all(x % (2 << z) == 0 for x in numbers):
+            z += 1
+        self.coarsest = max(2, (1 << l) >> z) + 1
+        self.n, self.least = n, classes(seam, n)
+
+    def glued(self, n):
+        return n >= self.coarsest
+
+    def classes(self, n):
+        stride = (self.n - 1) // (n - 1)
+        return [self.least[k * stride] // stride for k in range(4 * (n - 1))]
+
+    def mates(self, n):
+        members = {}
+        for p, c in enumerate(self.classes(n)):
+            members.setdefault(c, []).append(p)
+        mate = {}
+        for group in members.values():
+            if len(group) == 2:
+                a, b = (border_sample(n, p) for p in group)
+                mate[a], mate[b] = b, a
+        return mate
+
+    def average(self, image, n):
+        least, size = self.classes(n), 4 * (n - 1)
+        total, weight = [0.0] * size, [0.0] * size
+        for p in range(size):
+            i, j = border_sample(n, p)
+            w = 1.0 if p % (n - 1) == 0 else 2.0
+            total[least[p]] += w * image[j][i]
+            weight[least[p]] += w
+        for p in range(size):
+            i, j = border_sample(n, p)
+            image[j][i] = total[least[p]] / weight[least[p]]
+
+
+def transform_along_seam(image, n, border):
+    last = n - 1
+    for parity, factor in STEPS:
+        for j in range(parity, n, 2):
+            above, below = image[1 if j == 0 else j - 1], image[last - 1 if j == last else j + 1]
+            for i in range(n):
+                image[j][i] += factor * (above[i] + below[i])
+        for line in image:
+            for k in range(parity, n, 2):
+                line[k] += factor * (line[1 if k == 0 else k - 1] + line[last - 1 if k == last else k + 1])
+        if parity == 0 and border:
+            border.average(image, n)
+
+
+class SurfaceModels:
+    def __init__(self):
+        self.empty, self.magnitude, self.sign = Models(), Models(), Models()
+        self.larger = Models(lambda: ExpGolomb(30))
+        self.weights = Models(lambda: [65536 * 13 // 10 // 9] * 9)
+        self.sign_weights = Models(lambda: [65536 * 13 // 10 // 4] * 4)
+
+
+def read_surface(n_file, content, seam):
+    step, ratios, limit_byte = struct.unpack_from("<fBB", content)
+    demand(2.0 ** -100 <= step <= 2.0 ** 100)
+    limit = 1 + limit_byte / 16
+    d = Decoder(content[6:])
+    border, models = Border(seam, n_file), SurfaceModels()
+    surface = [[[q * step for q in image[3 * j:3 * j + 3]] for j in range(3)] for image in read_coarse(d)]
+    if border.glued(3):
+        for image in surface:
+            border.average(image, 3)
+    before, m, v = {}, 3, 0
+    while m < n_file:
+        n = 2 * m - 1
+        glued = border if border.glued(m) else None
+        prediction = []
+        for image in surface:
+            fine = [[0.0] * n for _ in range(n)]
+            for j in range(m):
+                for i in range(m):
+                    fine[2 * j][2 * i] = image[j][i] * (1.0 / A)
+            transform_along_seam(fine, n, glued)
+            prediction.append(fine)
+        q, details, any_coded = read_details(d, models, prediction, n, v, step, ratios, limit, glued, before)
+        if any_coded:
+            for c in range(3):
+                fine = [[0.0] * n for _ in range(n)]
+                for (i, j), value in details.items():
+                    fine[j][i] = value[c] * A if i % 2 and j % 2 else value[c]
+                transform_along_seam(fine, n, glued)
+                for j in range(n):
+                    for i in range(n):
+                        prediction[c][j][i] += fine[j][i]
+        if not glued and border.glued(n):
+            for image in prediction:
+                border.average(image, n)
+        surface, before, m, v = prediction, q, n, v + 1
+    d.finish()
+    return [f32(surface[c][j][i]) for j in range(n_file) for i in range(n_file) for c in range(3)]
+
+
+def read_details(d, models, prediction, n, v, step, ratios, limit, glued, before):
+    last = n - 1
+    mate = glued.mates(n) if glued else {}
+
+    def P(i, j):
+        return (prediction[0][j][i], prediction[1][j][i], prediction[2][j][i])
+
+    mean = 0.0
+    for j in range(last):
+        for i in range(last):
+            c = cross(sub(P(i + 1, j + 1), P(i, j)), sub(P(i, j + 1), P(i + 1, j)))
+            mean += math.sqrt(dot(c, c))
+    mean = mean * 0.5 / (float(last) * float(last))
+    k = min(v * (ratios & 15), 2 * (ratios >> 4))
+    ratio = [1.0, 1.189207115002721, 1.4142135623730951, 1.6817928305074292][k % 4] * float(1 << k // 4)
+
+    def derivative(i, j, x, y):
+        i0, j0, i1, j1 = i - x, j - y, i + x, j + y
+        low, high = i0 >= 0 and j0 >= 0, i1 <= last and j1 <= last
+        if low and high:
+            return sub(P(i1, j1), P(i0, j0))
+        inner = P(i1, j1) if high else P(i0, j0)
+        if (i, j) in mate:
+            a, b = mate[i, j]
+            outer = P(min(max(a, 1), last - 1) if a in (0, last) else a, min(max(b, 1), last - 1) if b in (0, last) else b)
+        else:
+            outer = add(P(i, j), sub(P(i, j), inner))
+        return sub(inner, outer) if high else sub(outer, inner)
+
+    def frame(i, j, band):
+        di, dj = derivative(i, j, 1, 0), derivative(i, j, 0, 1)
+        g = cross(di, dj)
+        G, I = dot(g, g), dot(di, di)
+        if G > 0 and I > 0:
+            normal, along = times(1.0 / math.sqrt(G), g), times(1.0 / math.sqrt(I), di)
+            axes = (normal, along, cross(normal, along))
+        else:
+            axes = ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
+        f = 1.0
+        if mean > 0:
+            r, squared = math.sqrt(G) * 0.25 / mean, limit * limit
+            f = math.sqrt(squared if r * limit * limit < 1 else 1.0 / squared if r > squared else 1.0 / r)
+        w = step * f
+        if band == 0:
+            second = sub(add(P(i + 1, j), P(i - 1, j)), times(2.0, P(i, j)))
+        elif band == 1:
+            second = sub(add(P(i, j + 1), P(i, j - 1)), times(2.0, P(i, j)))
+        else:
+            second = sub(add(P(i + 1, j + 1), P(i - 1, j - 1)), add(P(i - 1, j + 1), P(i + 1, j - 1)))
+        return axes, (w, w * ratio, w * ratio), dot(second, axes[0]) / w
+
+    q, details, any_coded = {}, {}, False
+    for band, (i0, j0) in enumerate([(1, 0), (0, 1), (1, 1)]):
+        empty = [d.bit(models.empty[c, v]) for c in range(3)]
+        if all(empty):
+            continue
+        any_coded = True
+        for j in range(j0, n, 2):
+            for i in range(i0, n, 2):
+                other = mate.get((i, j))
+                if other:
+                    other_band = 1 if other[0] % 2 == 0 else 0
+                    if (other_band, other[1], other[0]) < (band, j, i):
+                        continue
+                axes, steps, bend = frame(i, j, band)
+                here, detail = [0, 0, 0], (0.0, 0.0, 0.0)
+                for c in range(3):
+                    if empty[c]:
+                        continue
+                    here[c] = read_detail(d, models, q, before, i, j, c, here, band, v, bend)
+                    if here[c]:
+                        q[c, i, j] = here[c]
+                        detail = add(detail, times(here[c] * steps[c], axes[c]))
+                if any(here):
+                    details[i, j] = detail
+                    if other:
+                        details[other] = detail
+                        for c in range(3):
+                            q[(c,) + other] = here[c]
+    return q, details, any_coded
+
+
+def read_detail(d, models, coded, before, i, j, component, here, band, v, bend):
+    def q(x, y, c=component):
+        return coded.get((c, i + x, j + y), 0)
+
+    pi, pj = i // 4 * 2 + i % 2, j // 4 * 2 + j % 2
+
+    def p(x, y):
+        return before.get((component, pi + x, pj + y), 0)
+
+    e = 1 if component else 0
+    W, N, dia = abs(q(-2, 0)), abs(q(0, -2)), abs(q(-2, -2)) + abs(q(2, -2))
+    far = abs(q(-4, 0)) + abs(q(0, -4))
+    near = 2 * (W + N) + dia + far
+    siblings = [(), ((-1, -1), (1, -1), (-1, 1), (1, 1)), ((0, -1), (0, 1), (-1, 0), (1, 0))][band]
+    sib = sum(abs(q(*at)) for at in siblings)
+    F = [0, q(-1, -1) - q(1, -1) - q(-1, 1) + q(1, 1), sum(q(*at) for at in siblings)][band]
+    up_near = abs(p(-2, 0)) + abs(p(2, 0)) + abs(p(0, -2)) + abs(p(0, 2))
+    up = 2 * abs(p(0, 0)) + up_near
+    others = sum(2 * abs(here[c]) for c in range(component))
+    others += sum((abs(q(-2, 0, c)) + abs(q(0, -2, c)) + 1) // 2 for c in range(component + 1, 3))
+    ring = far + sum(abs(q(*at)) for at in ((-4, -2), (4, -2), (-2, -4), (2, -4), (-4, -4), (4, -4)))
+    a, b, u, s = cls(near, 17), cls(others, 7), cls(up, 9), cls(sib, 11)
+    t = cls(2 * near + 3 * others + up + 2 * sib, 23)
+    c = cls(int(4 * abs(bend)), 13) if abs(bend) < 16384 else 13
+    k = 0
+    while k < 3:
+        keys = [(0, a, b, e, k), (1, a, u, band == 2, e, k), (2, cls(W, 7), cls(N, 7), cls(dia, 7), e, k),
+                (3, t, component, k), (4, v, band, min(a, 9), e, k), (5, c, min(a, 7), e, k), (6, u, s, band, e, k),
+                (7, s, min(a, 9), e, k), (8, cls(ring, 13), cls(up_near, 7), e, k)]
+        if not d.mixed_twice([models.magnitude[key] for key in keys], models.weights[0, t, e, k],
+                             models.weights[1, v, band, e, k]):
+            break
+        k += 1
+    if k == 0:
+        return 0
+    magnitude = k if k < 3 else 3 + models.larger[a].read(d)
+    demand(magnitude < 1 << 30)
+    keys = [(0, band, sg(q(-2, 0)), sg(q(0, -2)), sg(q(-2, -2)), sg(q(2, -2)), e),
+            (1, band, sg(p(0, 0)), sg(F), sg(q(-2, 0)), e), (2, band, 2 * min(c, 7) + (bend < 0), e),
+            (3, band, sg(p(0, 0)), sg(q(-4, 0)), sg(q(0, -4)), e)]
+    negative = d.mixed([models.sign[key] for key in keys], models.sign_weights[band, e])
+    return -magnitude if negative else magnitude
 
 
 # --- section 6: fusing and diffusion

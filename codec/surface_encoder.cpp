@@ -1,0 +1,205 @@
+#include "surface_encoder.h"
+
+#include "bit_counter.h"
+#include "range_encoder.h"
+#include "surface_code.h"
+
+#include <algorithm>
+#include <cmath>
+#include <memory>
+
+namespace gimg::codec {
+
+namespace {
+
+/// What one bit is allowed to mend, in squared steps.
+constexpr double kWorthOfBit = 0.11;
+/// A band none of whose details reaches this part of a step is not worth coding.
+constexpr double kEmptyBelow = 0.6;
+
+struct EncoderMemory
+{
+    explicit EncoderMemory(std::uint32_t grid)
+    {
+        const std::size_t samples = std::size_t{grid} * grid,
+                          coarser = std::size_t{grid / 2 + 1} * (grid / 2 + 1);
+        for (unsigned c = 0; c < kComponents; ++c) {
+            work.surface[c] = numbers(samples);
+            work.detail[c] = numbers(samples);
+            work.coarse[c] = numbers(coarser);
+            work.coded[c] = integers(codedSize(grid));
+            work.parents[c] = integers(codedSize(grid));
+        }
+        work.border = numbers(2 * std::size_t{borderSize(grid)});
+    }
+
+    SurfaceWork work;
+
+private:
+    double* numbers(std::size_t count) { return numbers_.emplace_back(count).data(); }
+    std::int32_t* integers(std::size_t count) { return integers_.emplace_back(count).data(); }
+
+    std::vector<std::vector<double>> numbers_;
+    std::vector<std::vector<std::int32_t>> integers_;
+};
+
+/// Chooses and codes one detail after the other.
+class ThriftyDetails
+{
+public:
+    ThriftyDetails(const TransformedSurface& surface, const SurfaceParameters& parameters)
+        : surface_(surface), parameters_(parameters)
+    {
+    }
+
+    void begin(const SurfaceLevel& level)
+    {
+        exact_ = &surface_.levels[level.index];
+        tangentialRatio_ = level.tangentialRatio;
+    }
+
+    bool isEmpty(unsigned orientation, unsigned component) const
+    {
+        const double step =
+            parameters_.step * (component == 0 ? 1 : tangentialRatio_) / parameters_.areaLimit;
+        return exact_->largest[orientation] < kEmptyBelow * step;
+    }
+
+    std::int32_t operator()(RangeEncoder& coder, const DetailContext& context, unsigned component,
+                            std::size_t index, const Frame& frame) const
+    {
+        const Vector detail = {exact_->detail[0][index], exact_->detail[1][index], exact_->detail[2][index]};
+        const double exact = dot(frame.axis[component], detail) / frame.step[component];
+        const double size = std::min(std::abs(exact), static_cast<double>(kMaxDetail - 1));
+        const auto nearest = static_cast<std::int32_t>(size + 0.5);
+        if (nearest == 0) return codeSurfaceDetail(coder, context, 0);
+
+        const std::int32_t sign = exact < 0 ? -1 : 1;
+        std::int32_t best = nearest;
+        double bestCost = cost(context, sign * nearest, size - nearest);
+        const std::int32_t others[2] = {nearest - 1, 0};
+        for (int k = nearest == 1 ? 1 : 0; k < (nearest <= 2 ? 2 : 1); ++k) {
+            const double candidate = cost(context, sign * others[k], size - others[k]);
+            if (candidate < bestCost) bestCost = candidate, best = others[k];
+        }
+        return codeSurfaceDetail(coder, context, sign * best);
+    }
+
+private:
+    static double cost(const DetailContext& context, std::int32_t value, double error)
+    {
+        BitCounter counter;
+        codeSurfaceDetail(counter, context, value);
+        return error * error + kWorthOfBit * counter.bits();
+    }
+
+    const TransformedSurface& surface_;
+    const SurfaceParameters& parameters_;
+    const TransformedSurface::Level* exact_ = nullptr;
+    double tangentialRatio_ = 1;
+};
+
+} // namespace
+
+SurfaceEncoder::SurfaceEncoder(const Seam& seam, std::uint32_t grid)
+    : seam_(seam), grid_(grid), classes_(borderClasses(seam, grid))
+{
+}
+
+SeamView SurfaceEncoder::view() const
+{
+    return {seam_.sides.data(), static_cast<std::uint32_t>(seam_.sides.size()), seam_.start, seam_.lowest};
+}
+
+TransformedSurface SurfaceEncoder::transform(std::span<const float> samples) const
+{
+    std::vector<std::uint32_t> mates(classes_.size());
+    const GluedBorder border(view(), grid_, classes_.data(), mates.data());
+    std::vector<double> work(2 * classes_.size());
+    TransformedSurface out;
+    out.grid = grid_;
+    for (std::uint32_t m = kCoarsest; m < grid_; m = 2 * m - 1) out.levels.emplace_back();
+    const std::size_t count = std::size_t{grid_} * grid_;
+    double squaredDiagonal = 0;
+    std::vector<double> image(count), coarse;
+    for (unsigned c = 0; c < kComponents; ++c) {
+        image.resize(count);
+        for (std::size_t k = 0; k < count; ++k) image[k] = static_cast<double>(samples[kComponents * k + c]);
+        border.average(image.data(), grid_, work.data());
+        const auto [least, most] = std::minmax_element(image.begin(), image.end());
+        squaredDiagonal += (*most - *least) * (*most - *least);
+        auto level = out.levels.rbegin();
+        for (std::uint32_t size = grid_; size > kCoarsest; size = size / 2 + 1, ++level) {
+            const std::uint32_t m = size / 2 + 1;
+            forwardLifting(image.data(), size, border.isGluedAt(m) ? &border : nullptr, work.data());
+            coarse.resize(std::size_t{m} * m);
+            for (std::uint32_t j = 0; j < size; ++j)
+                for (std::uint32_t i = 0; i < size; ++i) {
+                    double& value = image[j * std::size_t{size} + i];
+                    if (i % 2 == 1 && j % 2 == 1) value *= kInverseAreaScale;
+                    if (i % 2 == 1 || j % 2 == 1) continue;
+                    coarse[j / 2 * std::size_t{m} + i / 2] = value * kAreaScale;
+                    value = 0;
+                }
+            level->detail[c].assign(image.begin(), image.begin() + static_cast<std::ptrdiff_t>(size) * size);
+            image.swap(coarse);
+        }
+        for (unsigned k = 0; k < kCoarsest * kCoarsest; ++k) {
+            out.coarse[c][k] = image[k];
+            out.largest = std::max(out.largest, std::abs(image[k]));
+        }
+    }
+    out.diagonal = std::sqrt(squaredDiagonal);
+    std::uint32_t size = kCoarsest;
+    for (TransformedSurface::Level& level : out.levels) {
+        size = 2 * size - 1;
+        for (std::uint32_t j = 0; j < size; ++j)
+            for (std::uint32_t i = 0; i < size; ++i) {
+                if (i % 2 == 0 && j % 2 == 0) continue;
+                const std::size_t k = j * std::size_t{size} + i;
+                const Vector detail = {level.detail[0][k], level.detail[1][k], level.detail[2][k]};
+                double& largest = level.largest[i % 2 == 0 ? Vertical : j % 2 == 0 ? Horizontal : Diagonal];
+                largest = std::max(largest, std::sqrt(dot(detail, detail)));
+            }
+        for (const double value : level.largest) out.largest = std::max(out.largest, value);
+    }
+    return out;
+}
+
+CodedSurface SurfaceEncoder::encode(const TransformedSurface& surface,
+                                    const SurfaceParameters& parameters) const
+{
+    std::vector<std::uint32_t> mates(classes_.size());
+    const GluedBorder border(view(), grid_, classes_.data(), mates.data());
+    EncoderMemory memory(grid_);
+    QuantizedImage coarse;
+    for (unsigned c = 0; c < kComponents; ++c)
+        for (unsigned k = 0; k < kCoarsest * kCoarsest; ++k)
+            coarse.coarse[c][k] = std::llround(surface.coarse[c][k] / parameters.step);
+    const auto models = std::make_unique<SurfaceModels>();
+    RangeEncoder encoder;
+    ThriftyDetails pick(surface, parameters);
+    codeSurface(encoder, *models, parameters, border, coarse, memory.work, pick);
+
+    CodedSurface out{encoder.finish(), {}};
+    const std::size_t count = std::size_t{grid_} * grid_;
+    out.decoded.resize(kComponents * count);
+    for (unsigned c = 0; c < kComponents; ++c)
+        for (std::size_t k = 0; k < count; ++k)
+            out.decoded[kComponents * k + c] = static_cast<float>(memory.work.surface[c][k]);
+    return out;
+}
+
+float smallestStep(const TransformedSurface& surface)
+{
+    // Steps shrink by at most SurfaceParameters::areaLimit, below 17.
+    double detail = 0;
+    for (const TransformedSurface::Level& level : surface.levels)
+        for (const double value : level.largest) detail = std::max(detail, value);
+    const double needed =
+        std::max(32 * detail / (kMaxDetail - 1), surface.largest / (static_cast<double>(kMaxCoarse) / 4));
+    const float step = std::nextafter(static_cast<float>(needed), 1e38f);
+    return std::max(step, 7.8886090522101181e-31f);
+}
+
+} // namespace gimg::codec

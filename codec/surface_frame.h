@@ -1,0 +1,158 @@
+#pragma once
+
+#include "coefficients.h"
+#include "glued_border.h"
+
+#include <cmath>
+
+namespace gimg::codec {
+
+/// What a surface's chunk tells before its coded samples.
+struct SurfaceParameters
+{
+    double step = 1;         ///< of details along the normal, where cells have their mean area
+    double areaLimit = 1.75; ///< steps differ from that by at most this factor, both ways
+    unsigned rise = 2;       ///< quarter octaves a level by which tangential steps grow over normal ones
+    unsigned most = 12;      ///< quarter octaves at which that ends
+};
+
+/// The ratio of tangential steps to normal ones at a level of details, 0 for the coarsest.
+inline double tangentialRatio(const SurfaceParameters& parameters, unsigned level)
+{
+    constexpr double kQuarters[4] = {1.0, 1.189207115002721, 1.4142135623730951, 1.6817928305074292};
+    const unsigned grown = level * parameters.rise;
+    const unsigned exponent = grown < parameters.most ? grown : parameters.most;
+    return kQuarters[exponent % 4] * static_cast<double>(1u << exponent / 4);
+}
+
+struct Vector
+{
+    double x, y, z;
+};
+inline Vector operator+(Vector a, Vector b) { return {a.x + b.x, a.y + b.y, a.z + b.z}; }
+inline Vector operator-(Vector a, Vector b) { return {a.x - b.x, a.y - b.y, a.z - b.z}; }
+inline Vector operator*(double f, Vector a) { return {f * a.x, f * a.y, f * a.z}; }
+inline double dot(Vector a, Vector b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
+inline Vector cross(Vector a, Vector b)
+{
+    return {a.y * b.z - a.z * b.y, a.z * b.x - a.x * b.z, a.x * b.y - a.y * b.x};
+}
+
+/// A level while its details are coded.
+struct SurfaceLevel
+{
+    std::uint32_t size = 0; ///< samples a side, with the details
+    unsigned index = 0;     ///< 0 for the coarsest
+    double meanArea = 0;    ///< of a cell of the prediction
+    double tangentialRatio = 1;
+    const GluedBorder* border = nullptr; ///< nullptr: this level's details are not glued
+};
+
+/// The frame in which one detail is coded, and its steps.
+struct Frame
+{
+    Vector axis[kComponents]; ///< normal and two tangents
+    double step[kComponents];
+    double bend; ///< of the prediction along the band's direction, in normal steps
+};
+
+inline Vector sampleOf(const double* const (&planes)[kComponents], std::size_t at)
+{
+    return {planes[0][at], planes[1][at], planes[2][at]};
+}
+
+/// Twice the derivatives of the prediction: central differences, across the seam too; at a border that is not
+/// glued, twice the one-sided one.
+struct Derivatives
+{
+    Vector i, j;
+};
+
+inline Derivatives derivativesAt(const double* const (&planes)[kComponents], const SurfaceLevel& level,
+                                 std::uint32_t i, std::uint32_t j)
+{
+    const std::uint32_t n = level.size, last = n - 1;
+    const std::size_t at = j * std::size_t{n} + i;
+    const auto pick = [&](std::size_t k) { return sampleOf(planes, k); };
+    if (i > 0 && i < last && j > 0 && j < last)
+        return {pick(at + 1) - pick(at - 1), pick(at + n) - pick(at - n)};
+    // Details on the border are never at the square's corners.
+    const std::uint32_t mate =
+        level.border == nullptr ? GluedBorder::kNoMate : level.border->mateOf(n, borderPosition(n, i, j));
+    std::size_t beyond = 0;
+    if (mate != GluedBorder::kNoMate) {
+        const GridPoint p = borderPoint(n, mate);
+        const std::uint32_t bi = p.i == 0 ? 1 : p.i == last ? last - 1 : p.i;
+        const std::uint32_t bj = p.j == 0 ? 1 : p.j == last ? last - 1 : p.j;
+        beyond = bj * std::size_t{n} + bi;
+    }
+    const bool glued = mate != GluedBorder::kNoMate;
+    const Vector here = pick(at);
+    const auto across = [&](std::size_t inside, bool low) {
+        const Vector inner = pick(inside);
+        const Vector outer = glued ? pick(beyond) : here + (here - inner);
+        return low ? inner - outer : outer - inner;
+    };
+    Derivatives d;
+    d.i = i == 0 ? across(at + 1, true) : i == last ? across(at - 1, false) : pick(at + 1) - pick(at - 1);
+    d.j = j == 0 ? across(at + n, true) : j == last ? across(at - n, false) : pick(at + n) - pick(at - n);
+    return d;
+}
+
+/// Mean area of the prediction's cells, from their diagonals.
+inline double meanCellArea(const double* const (&planes)[kComponents], std::uint32_t n)
+{
+    double sum = 0;
+    for (std::uint32_t j = 0; j + 1 < n; ++j)
+        for (std::uint32_t i = 0; i + 1 < n; ++i) {
+            const std::size_t at = j * std::size_t{n} + i;
+            const Vector d = sampleOf(planes, at + n + 1) - sampleOf(planes, at);
+            const Vector e = sampleOf(planes, at + n) - sampleOf(planes, at + 1);
+            const Vector c = cross(d, e);
+            sum += std::sqrt(dot(c, c));
+        }
+    return sum * 0.5 / (static_cast<double>(n - 1) * static_cast<double>(n - 1));
+}
+
+inline Frame frameAt(const double* const (&planes)[kComponents], const SurfaceLevel& level,
+                     const SurfaceParameters& parameters, unsigned orientation, std::uint32_t i,
+                     std::uint32_t j)
+{
+    Frame frame;
+    const Derivatives d = derivativesAt(planes, level, i, j);
+    Vector normal = cross(d.i, d.j);
+    const double normalSquared = dot(normal, normal), alongSquared = dot(d.i, d.i);
+    const double area = std::sqrt(normalSquared) * 0.25;
+    // Lengths whose squares or fourth powers vanish give no direction.
+    if (!(normalSquared > 0 && alongSquared > 0)) {
+        frame.axis[0] = {0, 0, 1};
+        frame.axis[1] = {1, 0, 0};
+        frame.axis[2] = {0, 1, 0};
+    } else {
+        frame.axis[0] = (1.0 / std::sqrt(normalSquared)) * normal;
+        frame.axis[1] = (1.0 / std::sqrt(alongSquared)) * d.i;
+        frame.axis[2] = cross(frame.axis[0], frame.axis[1]);
+    }
+    double factor = 1;
+    if (level.meanArea > 0) {
+        const double ratio = area / level.meanArea, limit = parameters.areaLimit;
+        const double squared = ratio * limit * limit < 1 ? limit * limit
+                               : ratio > limit * limit   ? 1.0 / (limit * limit)
+                                                         : 1.0 / ratio;
+        factor = std::sqrt(squared);
+    }
+    frame.step[0] = parameters.step * factor;
+    frame.step[1] = frame.step[2] = frame.step[0] * level.tangentialRatio;
+
+    const std::uint32_t n = level.size;
+    const std::size_t at = j * std::size_t{n} + i;
+    const auto pick = [&](std::size_t k) { return sampleOf(planes, k); };
+    const Vector second = orientation == Horizontal ? pick(at + 1) + pick(at - 1) - 2.0 * pick(at)
+                          : orientation == Vertical
+                              ? pick(at + n) + pick(at - n) - 2.0 * pick(at)
+                              : pick(at + n + 1) + pick(at - n - 1) - (pick(at + n - 1) + pick(at - n + 1));
+    frame.bend = dot(second, frame.axis[0]) / frame.step[0];
+    return frame;
+}
+
+} // namespace gimg::codec

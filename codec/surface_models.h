@@ -1,0 +1,152 @@
+#pragma once
+
+#include "coefficients.h"
+
+namespace gimg::codec {
+
+/// Details along the normal, and along the two tangents, are coded with models of their own.
+constexpr unsigned kDirections = 2;
+constexpr unsigned kMagnitudeModels = 9;
+constexpr unsigned kSignModels = 4;
+constexpr unsigned kMagnitudeBits = 3; ///< before the escape
+
+struct SurfaceModels
+{
+    BitModel bandIsEmpty[kComponents][kLevels];
+    BitModel nearHere[18][8][kDirections][kMagnitudeBits];
+    BitModel nearParent[18][10][2][kDirections][kMagnitudeBits];
+    BitModel eachNear[8][8][8][kDirections][kMagnitudeBits];
+    BitModel everything[24][kComponents][kMagnitudeBits];
+    BitModel place[kLevels][3][10][kDirections][kMagnitudeBits];
+    BitModel bent[14][8][kDirections][kMagnitudeBits];
+    BitModel family[10][12][3][kDirections][kMagnitudeBits];
+    BitModel nearSiblings[12][10][kDirections][kMagnitudeBits];
+    BitModel wide[14][8][kDirections][kMagnitudeBits];
+    MixWeights<kMagnitudeModels> byActivity[24][kDirections][kMagnitudeBits];
+    MixWeights<kMagnitudeModels> byPlace[kLevels][3][kDirections][kMagnitudeBits];
+    ExpGolombModels<kDetailPrefixes> larger[18];
+    BitModel signNear[3][3][3][3][3][kDirections];
+    BitModel signFamily[3][3][3][3][kDirections];
+    BitModel signBent[3][16][kDirections];
+    BitModel signParentNear[3][3][3][3][kDirections];
+    MixWeights<kSignModels> signWeights[3][kDirections];
+    ExpGolombModels<kCoarseBits> coarse;
+};
+
+/// Everything coded before that says something about a detail's three components.
+struct DetailNeighbourhood
+{
+    const std::int32_t* near[kComponents];   ///< its own place
+    const std::int32_t* parent[kComponents]; ///< its parent's place, nullptr at the coarsest level
+    std::size_t pitch, parentPitch;
+};
+
+inline std::uint64_t at(const std::int32_t* q, std::ptrdiff_t offset) { return magnitudeOf(q[offset]); }
+inline unsigned third(std::int32_t value) { return static_cast<unsigned>(signOf(value) + 1); }
+
+/// Signed sum as one of three signs.
+inline unsigned thirdOf(std::int64_t value) { return static_cast<unsigned>(signOf(value) + 1); }
+
+struct DetailContext
+{
+    BitModel* magnitude[kMagnitudeModels];
+    MixWeights<kMagnitudeModels>*byActivity, *byPlace;
+    BitModel* sign[kSignModels];
+    MixWeights<kSignModels>* signWeights;
+    ExpGolombModels<kDetailPrefixes>* larger;
+};
+
+inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbourhood& around,
+                                     const std::int32_t (&here)[kComponents], unsigned component,
+                                     unsigned orientation, unsigned level, double bend)
+{
+    const std::int32_t* q = around.near[component];
+    const auto row = static_cast<std::ptrdiff_t>(around.pitch);
+    const unsigned direction = component == 0 ? 0 : 1;
+    const std::uint64_t west = at(q, -2), north = at(q, -2 * row);
+    const std::uint64_t diagonals = at(q, -2 * row - 2) + at(q, -2 * row + 2);
+    const std::uint64_t farther = at(q, -4) + at(q, -4 * row);
+    const std::uint64_t near = 2 * (west + north) + diagonals + farther;
+
+    std::uint64_t siblings = 0;
+    std::int64_t siblingSign = 0;
+    if (orientation == Vertical) {
+        siblings = at(q, -1 - row) + at(q, 1 - row) + at(q, row - 1) + at(q, row + 1);
+    } else if (orientation == Diagonal) {
+        siblings = at(q, -row) + at(q, row) + at(q, -1) + at(q, 1);
+    }
+    siblingSign = orientation == Vertical   ? q[-1 - row] - std::int64_t{q[1 - row]} - q[row - 1] + q[row + 1]
+                  : orientation == Diagonal ? std::int64_t{q[-row]} + q[row] + q[-1] + q[1]
+                                            : 0;
+
+    std::uint64_t parent = 0, parentNear = 0;
+    std::int32_t parentSign = 0;
+    if (around.parent[component] != nullptr) {
+        const std::int32_t* p = around.parent[component];
+        const auto up = static_cast<std::ptrdiff_t>(around.parentPitch);
+        parent = at(p, 0);
+        parentSign = *p;
+        parentNear = at(p, -2) + at(p, 2) + at(p, -2 * up) + at(p, 2 * up);
+    }
+    std::uint64_t others = 0;
+    for (unsigned c = 0; c < kComponents; ++c) {
+        if (c < component)
+            others += 2 * magnitudeOf(here[c]);
+        else if (c > component)
+            others += (at(around.near[c], -2) + at(around.near[c], -2 * row) + 1) / 2;
+    }
+    const double size = bend < 0 ? -bend : bend;
+    const unsigned bent = activityClass(size < 16384.0 ? static_cast<std::uint64_t>(size * 4) : 65536, 13);
+
+    const unsigned a = activityClass(near, 17), b = activityClass(others, 7);
+    const unsigned p = activityClass(2 * parent + parentNear, 9), s = activityClass(siblings, 11);
+    const unsigned w = activityClass(west, 7), n = activityClass(north, 7), d = activityClass(diagonals, 7);
+    const unsigned all = activityClass(2 * near + 3 * others + 2 * parent + parentNear + 2 * siblings, 23);
+    const std::uint64_t ring = farther + at(q, -2 * row - 4) + at(q, -2 * row + 4) + at(q, -4 * row - 2) +
+                               at(q, -4 * row + 2) + at(q, -4 * row - 4) + at(q, -4 * row + 4);
+    DetailContext c;
+    c.magnitude[0] = models.nearHere[a][b][direction];
+    c.magnitude[1] = models.nearParent[a][p][orientation == Diagonal][direction];
+    c.magnitude[2] = models.eachNear[w][n][d][direction];
+    c.magnitude[3] = models.everything[all][component];
+    c.magnitude[4] = models.place[level][orientation][a < 9 ? a : 9][direction];
+    c.magnitude[5] = models.bent[bent][a < 7 ? a : 7][direction];
+    c.magnitude[6] = models.family[p][s][orientation][direction];
+    c.magnitude[7] = models.nearSiblings[s][a < 9 ? a : 9][direction];
+    c.magnitude[8] = models.wide[activityClass(ring, 13)][activityClass(parentNear, 7)][direction];
+    c.byActivity = models.byActivity[all][direction];
+    c.byPlace = models.byPlace[level][orientation][direction];
+    c.larger = &models.larger[a];
+
+    c.sign[0] = &models.signNear[orientation][third(q[-2])][third(q[-2 * row])][third(q[-2 * row - 2])]
+                                [third(q[-2 * row + 2])][direction];
+    c.sign[1] =
+        &models.signFamily[orientation][third(parentSign)][thirdOf(siblingSign)][third(q[-2])][direction];
+    c.sign[2] = &models.signBent[orientation][2 * (bent < 7 ? bent : 7) + (bend < 0 ? 1u : 0u)][direction];
+    c.sign[3] =
+        &models.signParentNear[orientation][third(parentSign)][third(q[-4])][third(q[-4 * row])][direction];
+    c.signWeights = &models.signWeights[orientation][direction];
+    return c;
+}
+
+template <class Coder>
+std::int32_t codeSurfaceDetail(Coder& coder, const DetailContext& context, std::int32_t value)
+{
+    std::uint64_t magnitude = magnitudeOf(value);
+    unsigned bit = 0;
+    for (; bit < kMagnitudeBits; ++bit) {
+        BitModel* models[kMagnitudeModels];
+        for (unsigned k = 0; k < kMagnitudeModels; ++k) models[k] = context.magnitude[k] + bit;
+        if (!codeMixed(coder, models, context.byActivity[bit], context.byPlace[bit], magnitude > bit)) break;
+    }
+    if (bit == 0) return 0;
+    if (bit < kMagnitudeBits)
+        magnitude = bit;
+    else
+        magnitude = kMagnitudeBits + codeExpGolomb(coder, *context.larger, magnitude - kMagnitudeBits);
+    if (magnitude > static_cast<std::uint64_t>(kMaxDetail)) return coder.fail(), 0;
+    const bool negative = codeMixed(coder, context.sign, *context.signWeights, value < 0);
+    return negative ? -static_cast<std::int32_t>(magnitude) : static_cast<std::int32_t>(magnitude);
+}
+
+} // namespace gimg::codec
