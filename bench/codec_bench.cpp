@@ -2,11 +2,10 @@
 // are the calls of the C interface, the others what these are made of.
 #include "bunny.h"
 
-#include "codec/arena.h"
-#include "codec/forward.h"
 #include "codec/fuse.h"
 #include "codec/image_header.h"
-#include "codec/seam.h"
+#include "codec/lifting.h"
+#include "codec/surface_encoder.h"
 #include "codec/triangulate.h"
 #include "format/container.h"
 #include "gimg/decode.h"
@@ -24,13 +23,18 @@ struct Stages
     const std::vector<std::uint8_t>& file;
     DecodedImages images;
     codec::ImageHeader header;
+    codec::Seam seam;
     std::vector<std::uint32_t> classes; ///< of the border's samples
 
     std::uint32_t grid() const { return header.grid; }
+    codec::SeamView view() const
+    {
+        return {seam.sides.data(), static_cast<std::uint32_t>(seam.sides.size()), seam.start, seam.lowest};
+    }
     size_t samples() const { return size_t{grid()} * grid(); }
 };
 
-std::vector<std::uint32_t> classesOf(const std::vector<std::uint8_t>& file, const gim_info& info)
+codec::Seam seamOf(const std::vector<std::uint8_t>& file, const gim_info& info)
 {
     std::vector<unsigned char> work(gim_workspace_size(&info));
     gim_seam seam{};
@@ -39,7 +43,7 @@ std::vector<std::uint32_t> classesOf(const std::vector<std::uint8_t>& file, cons
     gim_read_seam(file.data(), file.size(), nullptr, work.data(), work.size(), &seam, sides.data(),
                   static_cast<std::uint32_t>(sides.size()));
     sides.resize(seam.sides);
-    return codec::borderClasses(codec::Seam{info.lowest, seam.start, sides}, info.grid);
+    return {info.lowest, seam.start, sides};
 }
 
 const Stages* stages()
@@ -53,10 +57,12 @@ const Stages* stages()
         const bool sound =
             images.ok() &&
             format::readContents({file->data(), file->size()}, &contents) == format::ReadStatus::Ok &&
-            codec::readImageHeader(contents.geometry.content, codec::ImageKind::Geometry, &header) == format::ReadStatus::Ok;
+            codec::readImageHeader(contents.geometry.content, codec::ImageKind::Geometry, &header) ==
+                format::ReadStatus::Ok;
         if (!sound) return std::nullopt;
-        std::vector<std::uint32_t> classes = classesOf(*file, images->info);
-        return Stages{*file, std::move(*images), header, std::move(classes)};
+        codec::Seam seam = seamOf(*file, images->info);
+        std::vector<std::uint32_t> classes = codec::borderClasses(seam, images->info.grid);
+        return Stages{*file, std::move(*images), header, std::move(seam), std::move(classes)};
     }();
     return all ? &*all : nullptr;
 }
@@ -109,49 +115,64 @@ void readHeaders(benchmark::State& state)
 }
 BENCHMARK(readHeaders)->Unit(benchmark::kMillisecond);
 
-// Range decoder, mixing and contexts: bytes to quantised coefficients.
-void decodeEntropy(benchmark::State& state)
-{
-    const Stages* s = stages();
-    if (!have(state, s)) return;
-    std::vector<unsigned char> work(codec::imageWorkspace(s->header) + codec::Arena::kAlignment);
-    for (auto _ : state) {
-        codec::Arena arena(work.data(), work.size());
-        codec::QuantizedImage image;
-        if (codec::decodeCoefficients(s->header, arena, &image) != format::ReadStatus::Ok)
-            state.SkipWithError("decoding failed");
-    }
-    state.SetBytesProcessed(static_cast<int64_t>(state.iterations()) *
-                            static_cast<int64_t>(s->header.samples.size));
-}
-BENCHMARK(decodeEntropy)->Unit(benchmark::kMillisecond);
-
-// Quantised coefficients to samples, all three components.
+// What the decoder does at each level for all components: the transform of the coarser surface, and that of
+// the details.
 void inverseTransform(benchmark::State& state)
 {
     const Stages* s = stages();
     if (!have(state, s)) return;
-    std::vector<unsigned char> work(codec::imageWorkspace(s->header) + codec::Arena::kAlignment);
-    codec::Arena arena(work.data(), work.size());
-    codec::QuantizedImage image;
-    if (codec::decodeCoefficients(s->header, arena, &image) != format::ReadStatus::Ok)
-        return state.SkipWithError("decoding failed");
-    const auto dequantize = codec::Dequantizer::fromByte(s->header.step, s->header.shifts);
-    std::vector<double> samples(s->samples()), coarse(s->samples());
+    std::vector<std::uint32_t> mates(s->classes.size());
+    const codec::GluedBorder border(s->view(), s->grid(), s->classes.data(), mates.data());
+    std::vector<double> samples(s->samples(), 1.0), work(2 * s->classes.size());
     for (auto _ : state)
-        for (unsigned c = 0; c < codec::kComponents; ++c) {
-            codec::reconstructComponent(image, c, dequantize, samples.data(), coarse.data());
-            benchmark::DoNotOptimize(samples.data());
-            benchmark::ClobberMemory();
-        }
+        for (std::uint32_t m = codec::kCoarsest; m < s->grid(); m = 2 * m - 1)
+            for (unsigned c = 0; c < 2 * codec::kComponents; ++c) {
+                codec::inverseLifting(samples.data(), 2 * m - 1, border.isGluedAt(m) ? &border : nullptr,
+                                      work.data());
+                benchmark::DoNotOptimize(samples.data());
+                benchmark::ClobberMemory();
+            }
 }
 BENCHMARK(inverseTransform)->Unit(benchmark::kMillisecond);
+
+// The frames of all details of the finest level.
+void frames(benchmark::State& state)
+{
+    const Stages* s = stages();
+    if (!have(state, s)) return;
+    std::vector<std::uint32_t> mates(s->classes.size());
+    const codec::GluedBorder border(s->view(), s->grid(), s->classes.data(), mates.data());
+    std::vector<double> components[codec::kComponents];
+    const double* planes[codec::kComponents];
+    for (unsigned c = 0; c < codec::kComponents; ++c) {
+        for (size_t k = 0; k < s->samples(); ++k)
+            components[c].push_back(static_cast<double>(s->images.geometry.samples[3 * k + c]));
+        planes[c] = components[c].data();
+    }
+    const std::uint32_t n = s->grid();
+    for (auto _ : state) {
+        codec::SurfaceLevel level;
+        level.size = n;
+        level.meanArea = codec::meanCellArea(planes, n);
+        level.border = &border;
+        for (std::uint32_t j = 0; j < n; ++j)
+            for (std::uint32_t i = 0; i < n; ++i)
+                if (i % 2 == 1 || j % 2 == 1)
+                    benchmark::DoNotOptimize(codec::frameAt(planes, level, {},
+                                                            i % 2 == 0   ? codec::Vertical
+                                                            : j % 2 == 0 ? codec::Horizontal
+                                                                         : codec::Diagonal,
+                                                            i, j));
+    }
+}
+BENCHMARK(frames)->Unit(benchmark::kMillisecond);
 
 void forwardTransform(benchmark::State& state)
 {
     const Stages* s = stages();
     if (!have(state, s)) return;
-    for (auto _ : state) benchmark::DoNotOptimize(codec::transform(s->images.geometry.samples, s->grid()));
+    const codec::SurfaceEncoder encoder(s->seam, s->grid());
+    for (auto _ : state) benchmark::DoNotOptimize(encoder.transform(s->images.geometry.samples));
 }
 BENCHMARK(forwardTransform)->Unit(benchmark::kMillisecond);
 

@@ -27,7 +27,7 @@ static_assert(static_cast<int>(ReadStatus::Misuse) == GIM_MISUSE);
 
 constexpr std::uint32_t kDefaultGrid = 4097;
 constexpr std::uint32_t kDefaultSides = 16384;
-constexpr std::uint64_t kDefaultWorkspace = std::uint64_t{1} << 30;
+constexpr std::uint64_t kDefaultWorkspace = std::uint64_t{1} << 31;
 
 bool readLimits(const gim_limits* given, gim_limits* limits)
 {

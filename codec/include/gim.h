@@ -61,7 +61,7 @@ typedef struct gim_limits {
     size_t size;             /* sizeof(gim_limits) */
     uint32_t max_grid;       /* samples a side, of geometry and normals; default 4097 */
     uint32_t max_sides;      /* sides of the seam; default 16384 */
-    uint64_t max_workspace;  /* bytes; default 1 GiB */
+    uint64_t max_workspace;  /* bytes; default 2 GiB */
 } gim_limits;
 
 typedef enum gim_coding {
