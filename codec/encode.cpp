@@ -350,8 +350,10 @@ Outcome<EncodedFile> Encoder::encode(const Settings& settings) const
     return file;
 }
 
-Outcome<EncodedFile> Encoder::encodeToBytes(std::size_t target) const
+Outcome<EncodedFile> Encoder::encodeToBytes(std::size_t target, gim_coding coding) const
 {
+    if (coding != GIM_CODING_SURFACE && coding != GIM_CODING_WAVELET)
+        return EncodeError{EncodeError::Kind::BadSettings, "this coding has one size only", 0};
     const std::size_t fixed = format::kHeaderSize + format::chunkSize(1 + word_.size());
     const auto unreachable = [&](EncodeError error, std::size_t others) {
         if (error.kind == EncodeError::Kind::BadSettings) return error;
@@ -380,8 +382,14 @@ Outcome<EncodedFile> Encoder::encodeToBytes(std::size_t target) const
         normalSize = format::chunkSize(normals->content.size());
     }
 
-    const auto contentAt = [&](float step) { return surfaceContent(*surfaceEncoder_, surface_, step); };
-    auto found = searchStep(surface_, contentAt, room > normalSize ? room - normalSize : 0);
+    const std::size_t left = room > normalSize ? room - normalSize : 0;
+    auto found = [&] {
+        if (coding == GIM_CODING_SURFACE)
+            return searchStep(
+                surface_, [&](float step) { return surfaceContent(*surfaceEncoder_, surface_, step); }, left);
+        const TransformedImage image = codec::transform(xyz_, surface_.grid);
+        return searchStep(image, [&](float step) { return waveletContent(image, step); }, left);
+    }();
     if (EncodeError* error = std::get_if<EncodeError>(&found)) return unreachable(*error, normalSize);
     Candidate& geometry = std::get<Candidate>(found);
     EncodedFile file;

@@ -74,10 +74,11 @@ public:
     /// nearer.
     Outcome<Encoder> slid(float step, int rounds, const Retarget& retarget) const;
 
-    /// The best file with a surface coded in at most `target` bytes; at most max(1 %, 24 bytes) smaller.
+    /// The best file of at most `target` bytes; at most max(1 %, 24 bytes) smaller.
+    /// @param coding  of the geometry, surface or wavelet
     /// Normals get a quarter of the bytes that are neither container nor seam.
     /// TooSmall, TooLarge: see EncodeError.
-    Outcome<EncodedFile> encodeToBytes(std::size_t target) const;
+    Outcome<EncodedFile> encodeToBytes(std::size_t target, gim_coding coding = GIM_CODING_SURFACE) const;
 
     /// The geometry's samples, as given or slid.
     std::span<const float> samples() const { return xyz_; }

@@ -101,9 +101,9 @@ Result<LossyFile> judged(Result<codec::EncodedFile> encoded, const SurfaceMeasur
 class PsnrSearch
 {
 public:
-    PsnrSearch(const codec::Encoder& encoder, const SurfaceMeasure& measure, double psnr,
+    PsnrSearch(const codec::Encoder& encoder, gim_coding coding, const SurfaceMeasure& measure, double psnr,
                const EncodeProgress& progress)
-        : encoder_(encoder), measure_(measure), psnr_(psnr), progress_(progress)
+        : encoder_(encoder), coding_(coding), measure_(measure), psnr_(psnr), progress_(progress)
     {
     }
 
@@ -144,12 +144,14 @@ private:
     Result<LossyFile> attempt(double logStep)
     {
         codec::Settings settings;
+        settings.coding = coding_;
         settings.step = static_cast<float>(std::exp(logStep) * encoder_.diagonal());
         settings.normalStep = kNormalStep;
         return judged(resultOf(encoder_.encode(settings)), measure_);
     }
 
     const codec::Encoder& encoder_;
+    gim_coding coding_;
     const SurfaceMeasure& measure_;
     double psnr_;
     const EncodeProgress& progress_;
@@ -158,8 +160,10 @@ private:
 Result<LossyFile> codeFor(const EncodeGoal& goal, const codec::Encoder& encoder,
                           const SurfaceMeasure& measure, const EncodeProgress& progress)
 {
-    if (goal.target == EncodeTarget::Psnr) return PsnrSearch(encoder, measure, goal.psnr, progress).run();
-    return judged(resultOf(encoder.encodeToBytes(goal.bytes)), measure);
+    const gim_coding coding = goal.coding == LossyCoding::Surface ? GIM_CODING_SURFACE : GIM_CODING_WAVELET;
+    if (goal.target == EncodeTarget::Psnr)
+        return PsnrSearch(encoder, coding, measure, goal.psnr, progress).run();
+    return judged(resultOf(encoder.encodeToBytes(goal.bytes, coding)), measure);
 }
 
 // Samples are float32: what they cannot hold is refused, what they hold badly is said.
@@ -517,7 +521,7 @@ Result<LossyFile> MeshEncoder::Prepared::codeSliding(const GridEncoders::Sampled
                                                      const EncodeGoal& goal) const
 {
     Result<LossyFile> still = codeFor(goal, sampled.encoder, measure, progress);
-    if (!still) return still;
+    if (!still || goal.coding != LossyCoding::Surface) return still;
     const Result<codec::Encoder> moved = encoders->slid(sampled, still->step);
     if (!moved) return moved.error();
     Result<LossyFile> slid = codeFor(goal, *moved, measure, progress);

@@ -327,7 +327,7 @@ def rates(studio):
 
 def seam(studio):
     """The widest crack at a low rate: open, fused, fused and diffused."""
-    gim = studio.encoded(studio.shape("torus", "--resolution", "48"), "--bytes", 250)
+    gim = studio.encoded(studio.shape("torus", "--resolution", "48"), "--bytes", 250, "--coding", "wavelet")
     opened, fused, diffused = (studio.decoded(gim, *flags) for flags in (["--no-fuse"], ["--no-diffuse"], []))
     gap = np.linalg.norm(opened.positions[opened.border()] - fused.positions[fused.border()], axis=1)
     normal = diffused.vertex_normals()[diffused.border()]

@@ -86,6 +86,20 @@ TEST_F(Gimenc, ParamChoosesTheMapAndTheReportNamesIt)
     EXPECT_EQ(gimenc("--bytes 1000 --param best" + torus + file("torus.gim")).code, 2);
 }
 
+TEST_F(Gimenc, SurfaceCodingIsDecibelsAheadOfComponentsOnTheirOwn)
+{
+    const std::string files = mesh("torus.ply", shapes::torus(2, 1, 80, 40)) + file("torus.gim");
+    const auto psnr = [&](const std::string& options) {
+        const Ended ended = gimenc("--bytes 800 --grid 65 --json - " + options + files);
+        EXPECT_EQ(ended.code, 0) << ended.err;
+        return nlohmann::json::parse(ended.out).at("psnr").get<double>();
+    };
+    EXPECT_GT(psnr(""), psnr("--coding wavelet") + 3);
+    EXPECT_EQ(psnr(""), psnr("--coding surface"));
+    EXPECT_EQ(gimenc("--bytes 800 --coding best" + files).code, 2);
+    EXPECT_EQ(gimenc("--raw float --coding wavelet" + files).code, 2);
+}
+
 TEST_F(Gimenc, ReportsWhatTheFitIsWorthAndLeavesItOut)
 {
     const std::string files = mesh("torus.ply", shapes::torus(2, 1, 40, 20)) + file("torus.gim");

@@ -62,7 +62,7 @@ TEST(EncodePsnr, ATargetAboveTheGridSaysWhatItHolds)
 
 TEST(EncodeGrid, LeftOpenGrowsWithTheGoal)
 {
-    const Mesh mesh = shapes::wavySphere(1, 0.3, 5, 24);
+    const Mesh mesh = shapes::wavySphere(1, 0.3, 5, 16);
     const Result<MeshEncoder> encoder = MeshEncoder::prepare(mesh, {});
     ASSERT_TRUE(encoder.ok());
     const Result<EncodedMesh> small = encoder->encode({EncodeTarget::Bytes, 300});
@@ -99,7 +99,7 @@ TEST(EncodeRaw, FinerGridsConvergeQuadratically)
 {
     // Linear interpolation of a smooth surface: the error falls by 4, 12 dB, when the grid doubles; the
     // facets of the reference bound it from below.
-    const Mesh mesh = shapes::torus(3, 1, 192, 96);
+    const Mesh mesh = shapes::torus(3, 1, 144, 72);
     const double coarse = encode(mesh, forTarget(EncodeTarget::RawFloat, 33)).psnr;
     const double fine = encode(mesh, forTarget(EncodeTarget::RawFloat, 65)).psnr;
     EXPECT_GT(fine, coarse + 9.5);

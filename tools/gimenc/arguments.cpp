@@ -91,7 +91,7 @@ void addOptions(CLI::App& app, Arguments& a)
     auto* target = app.add_option_group("target", "what the file is made for; exactly one");
     target->add_option("--bytes", a.bytes, "size of the whole file, never exceeded")->check(positive);
     target->add_option("--psnr", a.psnr, "surface PSNR in dB, met within 0.5 dB above")->check(positive);
-    target->add_option("--raw", a.raw, "no compression loss but 12-bit integers, or none at all with float")
+    auto* raw = target->add_option("--raw", a.raw, "no compression loss but 12-bit integers, or none at all with float")
         ->check(CLI::IsMember({"12", "float"}));
     target->require_option(0, 1);
     app.add_option("--normals", a.normals, "add a normal image of this many samples a side, 2^k + 1");
@@ -106,6 +106,11 @@ void addOptions(CLI::App& app, Arguments& a)
     app.add_option("--weld", a.weld,
                    "merge vertices at equal positions: auto (where that harms nothing), always, never")
         ->check(CLI::IsMember({"auto", "always", "never"}));
+    app.add_option("--coding", a.coding,
+                   "surface (along normals and tangents, across the seam), or wavelet (x, y, z on their own, both "
+                   "sides of the seam)")
+        ->check(CLI::IsMember({"surface", "wavelet"}))
+        ->excludes(raw);
     app.add_option("--density", a.density, "samples: closer where the surface bends (curvature), or even")
         ->check(CLI::IsMember({"curvature", "even"}));
     app.add_option("--param", a.param,
@@ -175,6 +180,7 @@ std::vector<std::string> fileOptions(const Arguments& a)
     if (a.features) words.push_back("--features");
     if (!a.component.empty()) add("--component", a.component);
     if (a.weld != "auto") add("--weld", a.weld);
+    if (a.coding != "surface") add("--coding", a.coding);
     if (a.density != "curvature") add("--density", a.density);
     if (a.param != "stretch") add("--param", a.param);
     if (a.closeHoles) add("--close-holes", a.closeHoles->text());
@@ -201,6 +207,7 @@ EncodeOptions encodeOptions(const Arguments& a)
     options.fit = !a.noFit;
     options.features = a.features;
     options.threads = a.threads;
+    options.coding = a.coding == "wavelet" ? LossyCoding::Wavelet : LossyCoding::Surface;
     options.density = a.density == "even" ? Density::Even : Density::Curvature;
     for (MapKind kind : kMapKinds)
         if (a.param == mapName(kind)) options.param = kind;

@@ -32,6 +32,7 @@ struct Arguments
     std::optional<double> psnr;
     std::string raw, component, json;
     std::string layout = "auto";
+    std::string coding = "surface";
     std::string density = "curvature";
     std::string weld = "auto";
     std::string param = "stretch";

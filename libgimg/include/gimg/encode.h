@@ -28,11 +28,19 @@ enum class EncodeTarget
 /// Called with the name of the stage and the fraction of it that is done.
 using EncodeProgress = std::function<void(const char* stage, double fraction)>;
 
+/// How Bytes and Psnr are coded.
+enum class LossyCoding
+{
+    Surface, ///< along normals and tangents, across the seam; samples slide
+    Wavelet, ///< x, y and z on their own, both sides of the seam, which the decoder fuses (thesis, 3.2)
+};
+
 struct EncodeGoal
 {
     EncodeTarget target = EncodeTarget::Bytes;
     size_t bytes = 12000; ///< size of the whole file
     double psnr = 70;     ///< surface PSNR in dB, see SurfaceDistance::psnr
+    LossyCoding coding = LossyCoding::Surface;
 };
 
 struct EncodeOptions : EncodeGoal
