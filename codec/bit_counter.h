@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cmath>
+#include <cstdint>
 
 namespace gimg::codec {
 
@@ -42,5 +43,26 @@ private:
 
     double bits_ = 0;
 };
+
+/// The magnitude to code for a number of `size` steps: of the nearest, the one below and 0 where that is
+/// near, the one with the least error^2 + worth bits, the error in steps.
+/// @param bitsOf  what coding a magnitude would take
+template <class BitsOf> std::int32_t thriftyMagnitude(double size, double worth, const BitsOf& bitsOf)
+{
+    const auto nearest = static_cast<std::int32_t>(size + 0.5);
+    if (nearest == 0) return 0;
+    const auto cost = [&](std::int32_t magnitude) {
+        const double error = size - magnitude;
+        return error * error + worth * bitsOf(magnitude);
+    };
+    std::int32_t best = nearest;
+    double bestCost = cost(nearest);
+    const std::int32_t others[2] = {nearest - 1, 0};
+    for (int k = nearest == 1 ? 1 : 0; k < (nearest <= 2 ? 2 : 1); ++k) {
+        const double candidate = cost(others[k]);
+        if (candidate < bestCost) bestCost = candidate, best = others[k];
+    }
+    return best;
+}
 
 } // namespace gimg::codec

@@ -142,25 +142,35 @@ template <class Coder> bool codeSign(Coder& coder, const CoefficientContext& con
     return codeMixed(coder, mixed, models.signWeights[o], negative);
 }
 
+/// Codes a detail: up to `Count` bits that say whether its magnitude is above 0, 1, .., an escape, and the
+/// sign.
+/// @param isAbove     codes such a bit: isAbove(its number, bit)
+/// @param isNegative  codes the sign: isNegative(bit)
+template <unsigned Count, class Coder, class IsAbove, class IsNegative>
+std::int32_t codeSigned(Coder& coder, ExpGolombModels<kDetailPrefixes>& larger, const IsAbove& isAbove,
+                        const IsNegative& isNegative, std::int32_t value)
+{
+    std::uint64_t magnitude = magnitudeOf(value);
+    unsigned bit = 0;
+    while (bit < Count && isAbove(bit, magnitude > bit)) ++bit;
+    if (bit == 0) return 0;
+    magnitude = bit < Count ? bit : Count + codeExpGolomb(coder, larger, magnitude - Count);
+    // The escape's largest value would leave the range of a detail by a hair.
+    if (magnitude > static_cast<std::uint64_t>(kMaxDetail)) return coder.fail(), 0;
+    const auto size = static_cast<std::int32_t>(magnitude);
+    return isNegative(value < 0) ? -size : size;
+}
+
 template <class Coder>
 std::int32_t codeDetail(Coder& coder, const CoefficientContext& context, std::int32_t value)
 {
-    std::uint64_t magnitude = magnitudeOf(value);
-    unsigned step = 0;
-    for (; step < kSteps; ++step) {
+    const auto isAbove = [&](unsigned step, bool bit) {
         BitModel* models[kMixed];
         for (unsigned k = 0; k < kMixed; ++k) models[k] = context.magnitude[k] + step;
-        if (!codeMixed(coder, models, context.weights[step], magnitude > step)) break;
-    }
-    if (step == 0) return 0;
-    if (step < kSteps)
-        magnitude = step;
-    else
-        magnitude = kSteps + codeExpGolomb(coder, *context.larger, magnitude - kSteps);
-    // The escape's largest value would leave the range of a detail by a hair.
-    if (magnitude > static_cast<std::uint64_t>(kMaxDetail)) return coder.fail(), 0;
-    const bool negative = codeSign(coder, context, value < 0);
-    return negative ? -static_cast<std::int32_t>(magnitude) : static_cast<std::int32_t>(magnitude);
+        return codeMixed(coder, models, context.weights[step], bit);
+    };
+    const auto isNegative = [&](bool bit) { return codeSign(coder, context, bit); };
+    return codeSigned<kSteps>(coder, *context.larger, isAbove, isNegative, value);
 }
 
 /// Three rows of coefficients of one component with zeros around, for neighbours without branches.

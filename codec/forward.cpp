@@ -43,35 +43,23 @@ public:
     {
         const double exact = image_.detail[component][index] * inverseStep_;
         const double size = std::abs(exact);
-        const auto nearest = static_cast<std::int32_t>(size + 0.5);
-        if (nearest == 0) return codeDetail(coder, context, 0);
-
         const std::int32_t sign = exact < 0 ? -1 : 1;
-        std::int32_t best = nearest;
-        double bestCost = cost(context, sign * nearest, size - nearest);
-        const std::int32_t others[2] = {nearest - 1, 0};
-        for (int k = nearest == 1 ? 1 : 0; k < (nearest <= 2 ? 2 : 1); ++k) {
-            const double candidate = cost(context, sign * others[k], size - others[k]);
-            if (candidate < bestCost) bestCost = candidate, best = others[k];
-        }
-        if (best != 0) {
-            ShiftFit& fit = best == 1 ? one_ : more_;
-            fit.sum += size - best;
+        const std::int32_t magnitude = thriftyMagnitude(size, kWorthOfBit, [&](std::int32_t candidate) {
+            BitCounter counter;
+            codeDetail(counter, context, sign * candidate);
+            return counter.bits();
+        });
+        if (magnitude != 0) {
+            ShiftFit& fit = magnitude == 1 ? one_ : more_;
+            fit.sum += size - magnitude;
             fit.count += 1;
         }
-        return codeDetail(coder, context, sign * best);
+        return codeDetail(coder, context, sign * magnitude);
     }
 
     std::uint8_t shifts() const { return static_cast<std::uint8_t>(one_.nibble() | more_.nibble() << 4); }
 
 private:
-    static double cost(const CoefficientContext& context, std::int32_t value, double error)
-    {
-        BitCounter counter;
-        codeDetail(counter, context, value);
-        return error * error + kWorthOfBit * counter.bits();
-    }
-
     const TransformedImage& image_;
     double inverseStep_;
     ShiftFit one_, more_;
@@ -149,15 +137,20 @@ TransformedImage transform(std::span<const float> samples, std::uint32_t grid)
     return out;
 }
 
+float smallestStep(double largestDetail, double largest)
+{
+    const double needed =
+        std::max(largestDetail / (kMaxDetail - 1), largest / (static_cast<double>(kMaxCoarse) / 4));
+    const float step = std::nextafter(static_cast<float>(needed), kLargestStep);
+    return std::max(step, kSmallestStep);
+}
+
 float smallestStep(const TransformedImage& image)
 {
     double detail = 0;
     for (const auto& bands : image.largestOfBand)
         for (const double value : bands) detail = std::max(detail, value);
-    const double needed =
-        std::max(detail / (kMaxDetail - 1), image.largest / (static_cast<double>(kMaxCoarse) / 4));
-    const float step = std::nextafter(static_cast<float>(needed), kLargestStep);
-    return std::max(step, kSmallestStep);
+    return smallestStep(detail, image.largest);
 }
 
 CodedImage encodeCoefficients(const TransformedImage& image, float step)

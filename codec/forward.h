@@ -40,4 +40,7 @@ CodedImage encodeCoefficients(const TransformedImage& image, float step);
 /// The step below which coefficients would not fit their coded range.
 float smallestStep(const TransformedImage& image);
 
+/// The same from the largest magnitude of a detail, and of any coefficient.
+float smallestStep(double largestDetail, double largest);
+
 } // namespace gimg::codec

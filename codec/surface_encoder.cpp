@@ -1,6 +1,7 @@
 #include "surface_encoder.h"
 
 #include "bit_counter.h"
+#include "forward.h"
 #include "range_encoder.h"
 #include "surface_code.h"
 
@@ -71,28 +72,16 @@ public:
         const Vector detail = {exact_->detail[0][index], exact_->detail[1][index], exact_->detail[2][index]};
         const double exact = dot(frame.axis[component], detail) / frame.step[component];
         const double size = std::min(std::abs(exact), static_cast<double>(kMaxDetail - 1));
-        const auto nearest = static_cast<std::int32_t>(size + 0.5);
-        if (nearest == 0) return codeSurfaceDetail(coder, context, 0);
-
         const std::int32_t sign = exact < 0 ? -1 : 1;
-        std::int32_t best = nearest;
-        double bestCost = cost(context, sign * nearest, size - nearest);
-        const std::int32_t others[2] = {nearest - 1, 0};
-        for (int k = nearest == 1 ? 1 : 0; k < (nearest <= 2 ? 2 : 1); ++k) {
-            const double candidate = cost(context, sign * others[k], size - others[k]);
-            if (candidate < bestCost) bestCost = candidate, best = others[k];
-        }
-        return codeSurfaceDetail(coder, context, sign * best);
+        const std::int32_t magnitude = thriftyMagnitude(size, kWorthOfBit, [&](std::int32_t candidate) {
+            BitCounter counter;
+            codeSurfaceDetail(counter, context, sign * candidate);
+            return counter.bits();
+        });
+        return codeSurfaceDetail(coder, context, sign * magnitude);
     }
 
 private:
-    static double cost(const DetailContext& context, std::int32_t value, double error)
-    {
-        BitCounter counter;
-        codeSurfaceDetail(counter, context, value);
-        return error * error + kWorthOfBit * counter.bits();
-    }
-
     const TransformedSurface& surface_;
     const SurfaceParameters& parameters_;
     const TransformedSurface::Level* exact_ = nullptr;
@@ -196,10 +185,7 @@ float smallestStep(const TransformedSurface& surface)
     double detail = 0;
     for (const TransformedSurface::Level& level : surface.levels)
         for (const double value : level.largest) detail = std::max(detail, value);
-    const double needed =
-        std::max(32 * detail / (kMaxDetail - 1), surface.largest / (static_cast<double>(kMaxCoarse) / 4));
-    const float step = std::nextafter(static_cast<float>(needed), 1e38f);
-    return std::max(step, 7.8886090522101181e-31f);
+    return smallestStep(32 * detail, surface.largest);
 }
 
 } // namespace gimg::codec

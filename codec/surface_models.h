@@ -41,11 +41,9 @@ struct DetailNeighbourhood
     std::size_t pitch, parentPitch;
 };
 
-inline std::uint64_t at(const std::int32_t* q, std::ptrdiff_t offset) { return magnitudeOf(q[offset]); }
-inline unsigned third(std::int32_t value) { return static_cast<unsigned>(signOf(value) + 1); }
-
-/// Signed sum as one of three signs.
-inline unsigned thirdOf(std::int64_t value) { return static_cast<unsigned>(signOf(value) + 1); }
+inline std::uint64_t sizeAt(const std::int32_t* q, std::ptrdiff_t offset) { return magnitudeOf(q[offset]); }
+/// A sign as 0, 1 or 2.
+inline unsigned third(std::int64_t value) { return static_cast<unsigned>(signOf(value) + 1); }
 
 struct DetailContext
 {
@@ -63,17 +61,17 @@ inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbou
     const std::int32_t* q = around.near[component];
     const auto row = static_cast<std::ptrdiff_t>(around.pitch);
     const unsigned direction = component == 0 ? 0 : 1;
-    const std::uint64_t west = at(q, -2), north = at(q, -2 * row);
-    const std::uint64_t diagonals = at(q, -2 * row - 2) + at(q, -2 * row + 2);
-    const std::uint64_t farther = at(q, -4) + at(q, -4 * row);
+    const std::uint64_t west = sizeAt(q, -2), north = sizeAt(q, -2 * row);
+    const std::uint64_t diagonals = sizeAt(q, -2 * row - 2) + sizeAt(q, -2 * row + 2);
+    const std::uint64_t farther = sizeAt(q, -4) + sizeAt(q, -4 * row);
     const std::uint64_t near = 2 * (west + north) + diagonals + farther;
 
     std::uint64_t siblings = 0;
     std::int64_t siblingSign = 0;
     if (orientation == Vertical) {
-        siblings = at(q, -1 - row) + at(q, 1 - row) + at(q, row - 1) + at(q, row + 1);
+        siblings = sizeAt(q, -1 - row) + sizeAt(q, 1 - row) + sizeAt(q, row - 1) + sizeAt(q, row + 1);
     } else if (orientation == Diagonal) {
-        siblings = at(q, -row) + at(q, row) + at(q, -1) + at(q, 1);
+        siblings = sizeAt(q, -row) + sizeAt(q, row) + sizeAt(q, -1) + sizeAt(q, 1);
     }
     siblingSign = orientation == Vertical   ? q[-1 - row] - std::int64_t{q[1 - row]} - q[row - 1] + q[row + 1]
                   : orientation == Diagonal ? std::int64_t{q[-row]} + q[row] + q[-1] + q[1]
@@ -84,16 +82,16 @@ inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbou
     if (around.parent[component] != nullptr) {
         const std::int32_t* p = around.parent[component];
         const auto up = static_cast<std::ptrdiff_t>(around.parentPitch);
-        parent = at(p, 0);
+        parent = sizeAt(p, 0);
         parentSign = *p;
-        parentNear = at(p, -2) + at(p, 2) + at(p, -2 * up) + at(p, 2 * up);
+        parentNear = sizeAt(p, -2) + sizeAt(p, 2) + sizeAt(p, -2 * up) + sizeAt(p, 2 * up);
     }
     std::uint64_t others = 0;
     for (unsigned c = 0; c < kComponents; ++c) {
         if (c < component)
             others += 2 * magnitudeOf(here[c]);
         else if (c > component)
-            others += (at(around.near[c], -2) + at(around.near[c], -2 * row) + 1) / 2;
+            others += (sizeAt(around.near[c], -2) + sizeAt(around.near[c], -2 * row) + 1) / 2;
     }
     const double size = bend < 0 ? -bend : bend;
     const unsigned bent = activityClass(size < 16384.0 ? static_cast<std::uint64_t>(size * 4) : 65536, 13);
@@ -102,8 +100,9 @@ inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbou
     const unsigned p = activityClass(2 * parent + parentNear, 9), s = activityClass(siblings, 11);
     const unsigned w = activityClass(west, 7), n = activityClass(north, 7), d = activityClass(diagonals, 7);
     const unsigned all = activityClass(2 * near + 3 * others + 2 * parent + parentNear + 2 * siblings, 23);
-    const std::uint64_t ring = farther + at(q, -2 * row - 4) + at(q, -2 * row + 4) + at(q, -4 * row - 2) +
-                               at(q, -4 * row + 2) + at(q, -4 * row - 4) + at(q, -4 * row + 4);
+    const std::uint64_t ring = farther + sizeAt(q, -2 * row - 4) + sizeAt(q, -2 * row + 4) +
+                               sizeAt(q, -4 * row - 2) + sizeAt(q, -4 * row + 2) + sizeAt(q, -4 * row - 4) +
+                               sizeAt(q, -4 * row + 4);
     DetailContext c;
     c.magnitude[0] = models.nearHere[a][b][direction];
     c.magnitude[1] = models.nearParent[a][p][orientation == Diagonal][direction];
@@ -121,7 +120,7 @@ inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbou
     c.sign[0] = &models.signNear[orientation][third(q[-2])][third(q[-2 * row])][third(q[-2 * row - 2])]
                                 [third(q[-2 * row + 2])][direction];
     c.sign[1] =
-        &models.signFamily[orientation][third(parentSign)][thirdOf(siblingSign)][third(q[-2])][direction];
+        &models.signFamily[orientation][third(parentSign)][third(siblingSign)][third(q[-2])][direction];
     c.sign[2] = &models.signBent[orientation][2 * (bent < 7 ? bent : 7) + (bend < 0 ? 1u : 0u)][direction];
     c.sign[3] =
         &models.signParentNear[orientation][third(parentSign)][third(q[-4])][third(q[-4 * row])][direction];
@@ -132,21 +131,15 @@ inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbou
 template <class Coder>
 std::int32_t codeSurfaceDetail(Coder& coder, const DetailContext& context, std::int32_t value)
 {
-    std::uint64_t magnitude = magnitudeOf(value);
-    unsigned bit = 0;
-    for (; bit < kMagnitudeBits; ++bit) {
+    const auto isAbove = [&](unsigned step, bool bit) {
         BitModel* models[kMagnitudeModels];
-        for (unsigned k = 0; k < kMagnitudeModels; ++k) models[k] = context.magnitude[k] + bit;
-        if (!codeMixed(coder, models, context.byActivity[bit], context.byPlace[bit], magnitude > bit)) break;
-    }
-    if (bit == 0) return 0;
-    if (bit < kMagnitudeBits)
-        magnitude = bit;
-    else
-        magnitude = kMagnitudeBits + codeExpGolomb(coder, *context.larger, magnitude - kMagnitudeBits);
-    if (magnitude > static_cast<std::uint64_t>(kMaxDetail)) return coder.fail(), 0;
-    const bool negative = codeMixed(coder, context.sign, *context.signWeights, value < 0);
-    return negative ? -static_cast<std::int32_t>(magnitude) : static_cast<std::int32_t>(magnitude);
+        for (unsigned k = 0; k < kMagnitudeModels; ++k) models[k] = context.magnitude[k] + step;
+        return codeMixed(coder, models, context.byActivity[step], context.byPlace[step], bit);
+    };
+    const auto isNegative = [&](bool bit) {
+        return codeMixed(coder, context.sign, *context.signWeights, bit);
+    };
+    return codeSigned<kMagnitudeBits>(coder, *context.larger, isAbove, isNegative, value);
 }
 
 } // namespace gimg::codec

@@ -13,11 +13,6 @@ constexpr double kReach = 0.75;      // lengths of a grid edge that one of its e
 constexpr double kCornerReach = 0.8; // lengths of the longest edge at a vertex, to a corner
 constexpr double kFar = 0.6;         // lengths of a grid edge: creases farther away do not cross it
 
-Vec3 areaVector(const std::vector<Vec3>& x, const Triangle& t)
-{
-    return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]) / 2;
-}
-
 /// Area-weighted, not of unit length.
 std::vector<Vec3> normalsOf(const GridSurface& surface)
 {

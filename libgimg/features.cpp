@@ -21,13 +21,7 @@ std::optional<Error> objection(const FeatureOptions& options)
         return Error{ErrorKind::BadArgument, "the angle of a sharp edge is not between 0 and 180 degrees"};
     if (!(options.shortest >= 0 && std::isfinite(options.shortest)))
         return Error{ErrorKind::BadArgument, "the shortest chain has no length"};
-    if (options.rounds < 1 || options.rounds > 100)
-        return Error{ErrorKind::BadArgument,
-                     std::to_string(options.rounds) + " rounds: 1 to 100 are allowed"};
-    if (options.threads < 0) return Error{ErrorKind::BadArgument, "the number of threads is negative"};
-    if (!(options.smoothing >= 0 && options.smoothing <= 1))
-        return Error{ErrorKind::BadArgument, "smoothing is not between 0 and 1"};
-    return std::nullopt;
+    return objectionToRounds(options.rounds, options.smoothing, options.threads);
 }
 
 /// Of the grids that are tried it takes the one with the smallest maximum whose PSNR did not fall.
@@ -99,10 +93,8 @@ Result<FeatureGeometry> followFeatures(const Mesh& mesh, const SurfaceMeasure& m
 try {
     if (const std::optional<Error> error = objectionToTriangles(mesh, "the mesh")) return *error;
     if (const std::optional<Error> error = objection(options)) return *error;
-    if (const std::optional<Error> error = objectionToImage(image)) return *error;
-    const Result<GluedGrid> grid = GluedGrid::of(seam, image.width);
+    const Result<GluedGrid> grid = gridOf(image, seam);
     if (!grid) return grid.error();
-    if (const std::optional<Error> error = objectionToMates(image, *grid)) return *error;
     const Result<SurfaceDistance> before = measure.against(meshOf(*grid, image));
     if (!before) return before.error();
 

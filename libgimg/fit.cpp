@@ -14,17 +14,6 @@
 namespace gimg {
 namespace {
 
-std::optional<Error> objection(const FitOptions& options)
-{
-    if (options.rounds < 1 || options.rounds > 100)
-        return Error{ErrorKind::BadArgument,
-                     std::to_string(options.rounds) + " rounds: 1 to 100 are allowed"};
-    if (options.threads < 0) return Error{ErrorKind::BadArgument, "the number of threads is negative"};
-    if (!(options.smoothing >= 0 && options.smoothing <= 1))
-        return Error{ErrorKind::BadArgument, "smoothing is not between 0 and 1"};
-    return std::nullopt;
-}
-
 Result<double> psnrOf(const GluedGrid& grid, const FloatImage& image, const SurfaceMeasure& measure)
 {
     const Result<SurfaceDistance> distance = measure.against(meshOf(grid, image));
@@ -49,11 +38,11 @@ Result<FittedGeometry> fitGeometry(const Mesh& mesh, const SurfaceMeasure& measu
                                    const GridSeam& seam, const FitOptions& options)
 try {
     if (const std::optional<Error> error = objectionToTriangles(mesh, "the mesh")) return *error;
-    if (const std::optional<Error> error = objection(options)) return *error;
-    if (const std::optional<Error> error = objectionToImage(image)) return *error;
-    const Result<GluedGrid> grid = GluedGrid::of(seam, image.width);
+    if (const std::optional<Error> error =
+            objectionToRounds(options.rounds, options.smoothing, options.threads))
+        return *error;
+    const Result<GluedGrid> grid = gridOf(image, seam);
     if (!grid) return grid.error();
-    if (const std::optional<Error> error = objectionToMates(image, *grid)) return *error;
     const Result<double> before = psnrOf(*grid, image, measure);
     if (!before) return before.error();
     if (std::isinf(*before)) return FittedGeometry{image, *before, *before};

@@ -102,6 +102,17 @@ void GluedGrid::findNeighbours(const std::vector<uint32_t>& classes)
         if (onBoundary_[v] != 0) around_[v] = kNothingAround;
 }
 
+std::vector<Vec3> GluedGrid::positions(std::span<const float> samples) const
+{
+    std::vector<Vec3> out;
+    out.reserve(sampleOf_.size());
+    for (const uint32_t sample : sampleOf_) {
+        const size_t at = size_t{3} * sample;
+        out.emplace_back(samples[at], samples[at + 1], samples[at + 2]);
+    }
+    return out;
+}
+
 std::vector<Triangle> GluedGrid::faces(const FloatImage& image) const
 {
     const auto size = static_cast<uint32_t>(n_);

@@ -5,9 +5,16 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <vector>
 
 namespace gimg {
+
+/// Half the cross product of two sides: as long as the triangle is large, and along its normal.
+inline Vec3 areaVector(const std::vector<Vec3>& positions, const Triangle& t)
+{
+    return (positions[t[1]] - positions[t[0]]).cross(positions[t[2]] - positions[t[0]]) / 2;
+}
 
 /// What keeps an image from being square samples that are finite (BadArgument, NotFinite).
 std::optional<Error> objectionToImage(const FloatImage& image);
@@ -31,6 +38,9 @@ public:
     /// kNone throughout where grid lines do not run on: on the surface's boundary, at cut-nodes and at the
     /// square's corners.
     const std::array<int, 4>& around(int vertex) const { return around_[vertex]; }
+
+    /// Where the vertices are, by 3 numbers for each sample.
+    std::vector<Vec3> positions(std::span<const float> samples) const;
 
     /// The decoder's triangles: two a cell, cell by cell in rows.
     std::vector<Triangle> faces(const FloatImage& image) const;

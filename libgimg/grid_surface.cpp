@@ -11,22 +11,13 @@ constexpr double kRail = 1e3;  // weight of staying on a line
 constexpr double kTolerance = 1e-3;
 constexpr int kMostIterations = 200;
 
-Vec3 areaVector(const std::vector<Vec3>& x, const Triangle& t)
-{
-    return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]) / 2;
-}
-
 } // namespace
 
 GridSurface::GridSurface(const GluedGrid& grid, const UnitFrame& frame, const FloatImage& image)
     : grid_(grid), frame_(frame), image_(image), faces_(grid.faces(image)), fixed_(grid.vertexCount())
 {
-    for (int v = 0; v < grid.vertexCount(); ++v) {
-        const size_t at = size_t{3} * grid.sampleOf(v);
-        positions_.push_back(
-            frame.inside(Vec3(image.samples[at], image.samples[at + 1], image.samples[at + 2])));
-        fixed_[v] = grid.onBoundary(v);
-    }
+    for (const Vec3& p : grid.positions(image.samples)) positions_.push_back(frame.inside(p));
+    for (int v = 0; v < grid.vertexCount(); ++v) fixed_[v] = grid.onBoundary(v);
 }
 
 void GridSurface::fit(SurfacePull& pull, double smoothing, const std::vector<Rail>& rails)
@@ -212,13 +203,29 @@ std::optional<Error> objectionToMates(const FloatImage& image, const GluedGrid& 
     return std::nullopt;
 }
 
+Result<GluedGrid> gridOf(const FloatImage& image, const GridSeam& seam)
+{
+    if (const std::optional<Error> error = objectionToImage(image)) return *error;
+    Result<GluedGrid> grid = GluedGrid::of(seam, image.width);
+    if (!grid) return grid;
+    if (const std::optional<Error> error = objectionToMates(image, *grid)) return *error;
+    return grid;
+}
+
+std::optional<Error> objectionToRounds(int rounds, double smoothing, int threads)
+{
+    if (rounds < 1 || rounds > 100)
+        return Error{ErrorKind::BadArgument, std::to_string(rounds) + " rounds: 1 to 100 are allowed"};
+    if (threads < 0) return Error{ErrorKind::BadArgument, "the number of threads is negative"};
+    if (!(smoothing >= 0 && smoothing <= 1))
+        return Error{ErrorKind::BadArgument, "smoothing is not between 0 and 1"};
+    return std::nullopt;
+}
+
 Mesh meshOf(const GluedGrid& grid, const FloatImage& image)
 {
     Mesh mesh;
-    for (int v = 0; v < grid.vertexCount(); ++v) {
-        const size_t at = size_t{3} * grid.sampleOf(v);
-        mesh.positions.emplace_back(image.samples[at], image.samples[at + 1], image.samples[at + 2]);
-    }
+    mesh.positions = grid.positions(image.samples);
     mesh.faces = grid.faces(image);
     return mesh;
 }

@@ -80,6 +80,13 @@ int pullSamplesFor(int pixels);
 /// Glued samples that differ (BadArgument).
 std::optional<Error> objectionToMates(const FloatImage& image, const GluedGrid& grid);
 
+/// Errors: BadArgument (an image that is not square, a seam that does not fit it, glued samples that differ),
+/// NotFinite.
+Result<GluedGrid> gridOf(const FloatImage& image, const GridSeam& seam);
+
+/// What is out of range among the options of a fit (BadArgument).
+std::optional<Error> objectionToRounds(int rounds, double smoothing, int threads);
+
 /// The decoder's triangles.
 Mesh meshOf(const GluedGrid& grid, const FloatImage& image);
 

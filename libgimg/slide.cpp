@@ -21,11 +21,6 @@ template <class Body> void forEach(size_t count, const Body& body)
                       });
 }
 
-Vec3 areaVector(const std::vector<Vec3>& x, const Triangle& t)
-{
-    return (x[t[1]] - x[t[0]]).cross(x[t[2]] - x[t[0]]) / 2;
-}
-
 } // namespace
 
 Result<SlideSurface> SlideSurface::of(const Mesh& mesh)
@@ -49,23 +44,12 @@ SampleSlide::SampleSlide(std::shared_ptr<const SlideSurface> surface, GluedGrid 
     : surface_(std::move(surface)), grid_(std::move(grid)), height_(grid_.vertexCount()),
       hint_(grid_.vertexCount())
 {
-    const std::vector<Vec3> position = vertices(image.samples);
+    const std::vector<Vec3> position = grid_.positions(image.samples);
     forEach(position.size(), [&](size_t v) {
         const NearestPoint foot = surface_->nearest.to(position[v]);
         height_[v] = (position[v] - foot.point).dot(surface_->faceNormals[foot.face]);
         hint_[v] = foot.face;
     });
-}
-
-std::vector<Vec3> SampleSlide::vertices(std::span<const float> samples) const
-{
-    std::vector<Vec3> out;
-    out.reserve(hint_.size());
-    for (size_t v = 0; v < hint_.size(); ++v) {
-        const size_t at = size_t{3} * grid_.sampleOf(static_cast<int>(v));
-        out.emplace_back(samples[at], samples[at + 1], samples[at + 2]);
-    }
-    return out;
 }
 
 void SampleSlide::operator()(std::span<const float> decoded, std::span<float> targets)
@@ -74,7 +58,7 @@ void SampleSlide::operator()(std::span<const float> decoded, std::span<float> ta
     image.width = image.height = grid_.side();
     image.samples.assign(decoded.begin(), decoded.end());
     const std::vector<Triangle> faces = grid_.faces(image);
-    const std::vector<Vec3> at = vertices(decoded), before = vertices(targets);
+    const std::vector<Vec3> at = grid_.positions(decoded), before = grid_.positions(targets);
     std::vector<Vec3> normal(at.size(), Vec3::Zero());
     std::vector<double> area(at.size(), 0);
     for (const Triangle& t : faces) {

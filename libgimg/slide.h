@@ -40,7 +40,6 @@ public:
 private:
     SampleSlide(std::shared_ptr<const SlideSurface> surface, GluedGrid grid, const FloatImage& image);
 
-    std::vector<Vec3> vertices(std::span<const float> samples) const;
     void keepCellsUnfolded(const std::vector<Vec3>& before, std::vector<Vec3>& after,
                            const std::vector<Triangle>& faces) const;
 

@@ -2,6 +2,7 @@
 
 #include "crease_net.h"
 #include "gimg/decode.h"
+#include "grid_images.h"
 #include "grid_surface.h"
 #include "shapes.h"
 
@@ -10,31 +11,13 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <functional>
 
 namespace gimg {
 namespace {
 
-FloatImage sampled(const std::function<Vec3(double s, double t)>& surface, int n)
-{
-    FloatImage image{n, n, {}};
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i)
-            for (const double x : surface(static_cast<double>(i) / (n - 1), static_cast<double>(j) / (n - 1)))
-                image.samples.push_back(static_cast<float>(x));
-    return image;
-}
-
-Vec3 sampleAt(const FloatImage& image, int i, int j)
-{
-    return {image.at(i, j, 0), image.at(i, j, 1), image.at(i, j, 2)};
-}
-
-/// The whole border of the square is the surface's boundary.
-GridSeam openSeam(int lowest)
-{
-    return {lowest, 0, {{0, static_cast<uint32_t>(4 * (lowest - 1)), GIM_SIDE_BOUNDARY}}};
-}
+using test::openSeam;
+using test::sampleAt;
+using test::sampled;
 
 /// The octahedral layout: each side of the square folds onto itself.
 GridSeam foldedSeam(int lowest)

@@ -3,40 +3,21 @@
 #include "block_system.h"
 #include "gimg/decode.h"
 #include "glued_grid.h"
+#include "grid_images.h"
 #include "shapes.h"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
-#include <functional>
 #include <limits>
 #include <numbers>
 
 namespace gimg {
 namespace {
 
-using Surface = std::function<Vec3(double s, double t)>;
-
-FloatImage sampled(const Surface& surface, int n)
-{
-    FloatImage image{n, n, {}};
-    for (int j = 0; j < n; ++j)
-        for (int i = 0; i < n; ++i)
-            for (const double x : surface(static_cast<double>(i) / (n - 1), static_cast<double>(j) / (n - 1)))
-                image.samples.push_back(static_cast<float>(x));
-    return image;
-}
-
-Vec3 sampleAt(const FloatImage& image, int i, int j)
-{
-    return {image.at(i, j, 0), image.at(i, j, 1), image.at(i, j, 2)};
-}
-
-/// The whole border of the square is the surface's boundary.
-GridSeam openSeam(int lowest)
-{
-    return {lowest, 0, {{0, static_cast<uint32_t>(4 * (lowest - 1)), GIM_SIDE_BOUNDARY}}};
-}
+using test::openSeam;
+using test::sampleAt;
+using test::sampled;
 
 /// Opposite sides of the square are glued.
 GridSeam torusSeam(int lowest)
