@@ -1,54 +1,16 @@
 #include "gimg/mesh_io.h"
+#include "mesh_output.h"
 #include "polygon_soup.h"
 
 #include <algorithm>
-#include <bit>
-#include <charconv>
 #include <cmath>
 #include <exception>
-#include <fstream>
 
 namespace gimg {
 
 namespace {
 
-/// Collects a file's bytes.
-class Output
-{
-public:
-    explicit Output(bool bigEndian = false) : bigEndian_(bigEndian) {}
-
-    Output& operator<<(std::string_view text)
-    {
-        bytes_ += text;
-        return *this;
-    }
-    /// The shortest decimal that reads back as the same value.
-    template <class Number> Output& operator<<(Number value) requires(std::is_arithmetic_v<Number>)
-    {
-        char digits[32];
-        const auto [end, failure] = std::to_chars(digits, digits + sizeof digits, value);
-        bytes_.append(digits, end);
-        return *this;
-    }
-    Output& operator<<(const Vec3& p) { return *this << p[0] << " " << p[1] << " " << p[2]; }
-
-    void binary(uint64_t bits, int size)
-    {
-        for (int k = 0; k < size; ++k)
-            bytes_ += static_cast<char>(bits >> 8 * (bigEndian_ ? size - 1 - k : k) & 0xff);
-    }
-    void binary(float value) { binary(std::bit_cast<uint32_t>(value), 4); }
-    void binary(double value) { binary(std::bit_cast<uint64_t>(value), 8); }
-
-    const std::string& bytes() const { return bytes_; }
-
-private:
-    std::string bytes_;
-    bool bigEndian_;
-};
-
-void writeObj(const Mesh& mesh, std::span<const Vec3> normals, Output& out)
+void writeObj(const Mesh& mesh, std::span<const Vec3> normals, MeshOutput& out)
 {
     for (const Vec3& p : mesh.positions) out << "v " << p << "\n";
     for (const Vec3& n : normals) out << "vn " << n << "\n";
@@ -62,7 +24,7 @@ void writeObj(const Mesh& mesh, std::span<const Vec3> normals, Output& out)
     }
 }
 
-void writeOff(const Mesh& mesh, std::span<const Vec3> normals, Output& out)
+void writeOff(const Mesh& mesh, std::span<const Vec3> normals, MeshOutput& out)
 {
     out << (normals.empty() ? "OFF\n" : "NOFF\n") << mesh.vertexCount() << " " << mesh.faceCount() << " 0\n";
     for (size_t v = 0; v < mesh.positions.size(); ++v) {
@@ -88,7 +50,7 @@ struct VertexProperties
 };
 
 void writePlyHeader(const Mesh& mesh, const VertexProperties& vertex, bool isFloat, Encoding encoding,
-                    Output& out)
+                    MeshOutput& out)
 {
     out << "ply\nformat "
         << (encoding == Encoding::Ascii    ? "ascii"
@@ -105,7 +67,7 @@ void writePlyHeader(const Mesh& mesh, const VertexProperties& vertex, bool isFlo
     out << "element face " << mesh.faceCount() << "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
-void writePly(const Mesh& mesh, const VertexProperties& vertex, Encoding encoding, Output& out)
+void writePly(const Mesh& mesh, const VertexProperties& vertex, Encoding encoding, MeshOutput& out)
 {
     const bool isFloat = exactInFloat(mesh);
     writePlyHeader(mesh, vertex, isFloat, encoding, out);
@@ -139,7 +101,7 @@ void writePly(const Mesh& mesh, const VertexProperties& vertex, Encoding encodin
     }
 }
 
-void writeStl(const Mesh& mesh, Encoding encoding, Output& out)
+void writeStl(const Mesh& mesh, Encoding encoding, MeshOutput& out)
 {
     using Vec3f = Eigen::Vector3f;
     if (encoding == Encoding::Ascii)
@@ -196,15 +158,6 @@ Status checked(const Mesh& mesh, MeshFormat format, std::span<const Vec3> normal
     return Done{};
 }
 
-Status save(const Output& out, const std::string& path)
-{
-    std::ofstream file(path, std::ios::binary);
-    file.write(out.bytes().data(), static_cast<std::streamsize>(out.bytes().size()));
-    file.close();
-    if (!file) return Error{ErrorKind::FileNotWritable, path + ": cannot be written"};
-    return Done{};
-}
-
 } // namespace
 
 Status writeMesh(const Mesh& mesh, const std::string& path, std::span<const Vec3> normals, Encoding encoding)
@@ -214,7 +167,7 @@ try {
     if (const Status status = checked(mesh, *format, normals, encoding); !status)
         return Error{status.error().kind, path + ": " + status.error().message};
 
-    Output out(encoding == Encoding::BinaryBigEndian);
+    MeshOutput out(encoding == Encoding::BinaryBigEndian);
     switch (*format) {
     case MeshFormat::Obj:
         writeObj(mesh, normals, out);
@@ -229,7 +182,7 @@ try {
         writeStl(mesh, encoding, out);
         break;
     }
-    return save(out, path);
+    return out.save(path);
 } catch (const std::exception& failure) {
     return Error{ErrorKind::FileNotWritable, path + ": " + failure.what()};
 }
@@ -246,9 +199,9 @@ try {
         if (count != 0 && count != mesh.positions.size())
             return Error{ErrorKind::BadArgument, path + ": " + std::to_string(count) + " values for " +
                                                      std::to_string(mesh.vertexCount()) + " vertices"};
-    Output out(encoding == Encoding::BinaryBigEndian);
+    MeshOutput out(encoding == Encoding::BinaryBigEndian);
     writePly(mesh, {{}, colors, quality}, encoding, out);
-    return save(out, path);
+    return out.save(path);
 } catch (const std::exception& failure) {
     return Error{ErrorKind::FileNotWritable, path + ": " + failure.what()};
 }

@@ -253,6 +253,18 @@ double stretchEfficiency(const Mesh& mesh, const std::vector<Vec2>& st)
     return area * area / stretchEnergy(mesh, st);
 }
 
+std::vector<double> faceStretch(const Mesh& mesh, const std::vector<Vec2>& st)
+{
+    const double area = surfaceArea(mesh);
+    std::vector<double> stretch;
+    stretch.reserve(mesh.faces.size());
+    for (const Triangle& f : mesh.faces) {
+        const StretchElement element(mesh.positions[f[0]], mesh.positions[f[1]], mesh.positions[f[2]]);
+        stretch.push_back(std::sqrt(element.squaredStretch({st[f[0]], st[f[1]], st[f[2]]}) / area));
+    }
+    return stretch;
+}
+
 int flippedTriangles(const std::vector<Triangle>& faces, const std::vector<Vec2>& st)
 {
     int flipped = 0;

@@ -37,13 +37,15 @@ public:
                              "the octahedral layout is for closed surfaces of genus 0; this one has genus " +
                                  std::to_string(type.genus) + " and " + std::to_string(type.boundaries) +
                                  " boundary loops"};
+            if (options_.extrema)
+                return Error{ErrorKind::BadArgument, "the octahedral layout is not extended to extrema"};
             const StarTips tips = findStarTips(coarse_);
             if (tips.vertices.empty())
                 return Error{ErrorKind::TargetUnreachable, "no star of four paths opens this surface"};
             return octahedral(tips);
         }
         if (!sphere) return alongCut(extrema(FlattenEffort::Trial));
-        if (options_.layout == SquareLayout::Cut) return alongCut(extrema(FlattenEffort::Full));
+        if (options_.layout == SquareLayout::Cut || options_.extrema) return alongCut(extrema(FlattenEffort::Full));
         return starOrCut();
     }
 
@@ -52,6 +54,7 @@ private:
     {
         ExtremaOptions options;
         options.effort = effort;
+        options.most = options_.extrema.value_or(options.most);
         return findExtrema(coarse_, options, [&](double fraction) {
             if (progress_) progress_("cut", fraction);
         });
@@ -84,6 +87,7 @@ private:
         const int count = static_cast<int>(reached.vertices.size());
         if (count == 0) return settled(cutToDisk(mesh_), 0);
         const CutGraph cut = cutToDisk(mesh_, reached.vertices);
+        if (options_.extrema) return settled(cut, count);
         if (reached.energyWith < kSure * reached.energyWithout)
             if (Result<Unfolded> extended = settled(cut, count)) return extended;
         Result<Unfolded> extended = flattened(cut, count, SquareLayout::Cut);

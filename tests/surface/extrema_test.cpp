@@ -106,6 +106,27 @@ TEST(Unfold, TheCutGoesOnToTheFarEndOfALongBody)
     EXPECT_GT(unfolded->map.efficiency, 2 * plain->efficiency);
 }
 
+TEST(Unfold, AskedForNumbersOfExtremaAreTheIterationsOfTheCut)
+{
+    const Mesh mesh = jack(10);
+    UnfoldOptions options{{65, 0}};
+    options.param = MapKind::Tutte; // quick; which vertices are extrema does not depend on it
+    std::set<int> before;
+    for (int count : {0, 2}) {
+        options.extrema = count;
+        const Result<Unfolded> unfolded = unfold(mesh, options);
+        ASSERT_TRUE(unfolded.ok()) << unfolded.error().message;
+        EXPECT_EQ(unfolded->layout, SquareLayout::Cut);
+        EXPECT_EQ(unfolded->extrema, count);
+        const std::set<int> cut = verticesOf(unfolded->cut);
+        EXPECT_TRUE(std::includes(cut.begin(), cut.end(), before.begin(), before.end()));
+        EXPECT_GT(cut.size(), before.size());
+        before = cut;
+    }
+    options.layout = SquareLayout::Octahedral;
+    EXPECT_EQ(unfold(mesh, options).error().kind, ErrorKind::BadArgument);
+}
+
 TEST(Unfold, ACutThatFitsNoBorderIsNotExtendedIntoAnError)
 {
     // A grid of 5 has 16 units; a jack's extended cut needs more nodes than that on its border.
