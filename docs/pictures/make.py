@@ -5,257 +5,19 @@
 
 --bin: where the programs are, build/release/bin by default. --keep: where encoded files stay for the next run.
 
-Needs the Debian packages python3-numpy and python3-pil, and the bunny (corpus/fetch bunny).
+Needs the Debian packages python3-numpy and python3-pil; corpus/fetch brings the meshes.
 """
 import argparse
+import json
 import subprocess
 import tempfile
 from pathlib import Path
 
 import numpy as np
-from PIL import Image, ImageDraw, ImageFont
+from PIL import Image
 
-ROOT = Path(__file__).resolve().parents[2]
-IMAGES = ROOT / "docs" / "images"
-CLAY = (205, 196, 182)
-INSIDE = (214, 40, 40)  # back faces: what shows through a crack
-LINE = (58, 74, 102)
-SEAM = (200, 30, 30)
-PAPER = (255, 255, 255)
-SUPERSAMPLING = 3
-
-
-# ---- meshes --------------------------------------------------------------------------------------------------
-
-class Mesh:
-    def __init__(self, positions, faces):
-        self.positions, self.faces = positions, faces
-
-    def face_normals(self):
-        a, b, c = (self.positions[self.faces[:, k]] for k in range(3))
-        return np.cross(b - a, c - a)
-
-    def vertex_normals(self):
-        """Area-weighted, which is what a sum of cross products is."""
-        normals = np.zeros_like(self.positions)
-        for k in range(3):
-            np.add.at(normals, self.faces[:, k], self.face_normals())
-        return unit(normals)
-
-    def grid_coordinates(self):
-        """(s, t) of every face's corners in cells: gimdec writes two faces a cell, in rows (SPEC.md, section 7)."""
-        n = int(round((len(self.faces) / 2) ** 0.5))
-        first, second = self.faces[0::2], self.faces[1::2]
-        rising = (first[:, 0] == second[:, 0]) & (first[:, 2] == second[:, 1])
-        a, b, c, d = np.array([0, 0]), np.array([1, 0]), np.array([1, 1]), np.array([0, 1])
-        corners = np.empty((len(first), 2, 3, 2))
-        corners[rising] = [[a, b, c], [a, c, d]]
-        corners[~rising] = [[a, b, d], [b, c, d]]
-        cell = np.arange(len(first))
-        corners += np.stack([cell % n, cell // n], axis=1)[:, None, None, :]
-        return corners.reshape(-1, 3, 2), n
-
-    def border(self):
-        """The vertices along the square's border, counter-clockwise from (0, 0), the first one once more at the end."""
-        corners, n = self.grid_coordinates()
-        vertex = np.empty((n + 1, n + 1), int)
-        s, t = corners.reshape(-1, 2).astype(int).T
-        vertex[s, t] = self.faces.reshape(-1)
-        return np.concatenate([vertex[:-1, 0], vertex[-1, :-1], vertex[:0:-1, -1], vertex[0, ::-1]])
-
-
-def unit(v):
-    return v / np.maximum(np.linalg.norm(v, axis=-1, keepdims=True), 1e-300)
-
-
-def read_ply(path):
-    """The binary PLY that gimdec and gimshape write: a vertex is x, y, z and perhaps a normal."""
-    with open(path, "rb") as file:
-        counts, fields, element = {}, [], None
-        for line in iter(file.readline, b"end_header\n"):
-            word = line.decode().split()
-            if word[0] == "element":
-                element = word[1]
-                counts[element] = int(word[2])
-            elif word[0] == "property" and element == "vertex":
-                fields.append((word[2], {"float": "<f4", "double": "<f8"}[word[1]]))
-        vertices = np.fromfile(file, np.dtype(fields), counts["vertex"])
-        faces = np.fromfile(file, np.dtype([("n", "u1"), ("v", "<i4", 3)]), counts["face"])
-    assert (faces["n"] == 3).all()
-    return Mesh(np.stack([vertices[k] for k in "xyz"], axis=1).astype(float), faces["v"])
-
-
-# ---- the renderer --------------------------------------------------------------------------------------------
-
-def turn(yaw=0, pitch=0):
-    """Rows: right, up and towards the viewer, in the mesh's coordinates."""
-    y, p = np.radians(yaw), np.radians(pitch)
-    about_up = np.array([[np.cos(y), 0, -np.sin(y)], [0, 1, 0], [np.sin(y), 0, np.cos(y)]])
-    tilt = np.array([[1, 0, 0], [0, np.cos(p), -np.sin(p)], [0, np.sin(p), np.cos(p)]])
-    return tilt @ about_up
-
-
-def facing(direction):
-    """Looks against `direction`, with y as far up as that allows."""
-    towards = unit(np.asarray(direction, float))
-    right = unit(np.cross([0, 1, 0], towards))
-    return np.stack([right, np.cross(towards, right), towards])
-
-
-class View:
-    """An orthographic camera that shows all of the mesh, unless told to come closer."""
-
-    def __init__(self, mesh, rotation, width, height, zoom=1.0, at=None):  # at: the point in the middle
-        self.rotation, self.size = rotation, (width, height)
-        p = mesh.positions @ rotation.T
-        low, high = p.min(axis=0), p.max(axis=0)
-        self.scale = zoom * 0.94 * min(width / (high[0] - low[0]), height / (high[1] - low[1]))
-        self.centre = (low + high) / 2 if at is None else rotation @ np.asarray(at)
-
-
-def scan(screen, faces, width, height):
-    """Z-buffer: for every pixel the nearest face and the barycentric coordinates in it."""
-    nearest = np.full(width * height, -np.inf)
-    face_at = np.full(width * height, -1)
-    bary_at = np.zeros((width * height, 3))
-    corner = screen[faces]
-    low = np.clip(np.ceil(corner[..., :2].min(axis=1)), 0, [width, height]).astype(int)
-    high = np.clip(np.floor(corner[..., :2].max(axis=1)) + 1, 0, [width, height]).astype(int)
-    extent = np.maximum(high - low, 0)
-    count = extent[:, 0] * extent[:, 1]
-    order = np.flatnonzero(count)
-    chunk_of = np.cumsum(count[order]) // 2_000_000
-    for chunk in np.unique(chunk_of):
-        some = order[chunk_of == chunk]
-        f = np.repeat(some, count[some])
-        start = np.repeat(np.cumsum(count[some]) - count[some], count[some])
-        k = np.arange(len(f)) - start
-        x, y = low[f, 0] + k % extent[f, 0], low[f, 1] + k // extent[f, 0]
-        a, b, c = corner[f, 0], corner[f, 1], corner[f, 2]
-        area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-        with np.errstate(divide="ignore", invalid="ignore"):
-            v = ((x - a[:, 0]) * (c[:, 1] - a[:, 1]) - (y - a[:, 1]) * (c[:, 0] - a[:, 0])) / area
-            w = ((b[:, 0] - a[:, 0]) * (y - a[:, 1]) - (b[:, 1] - a[:, 1]) * (x - a[:, 0])) / area
-        u = 1 - v - w
-        keep = np.flatnonzero((u >= 0) & (v >= 0) & (w >= 0))
-        f, pixel = f[keep], y[keep] * width + x[keep]
-        bary = np.stack([u[keep], v[keep], w[keep]], axis=1)
-        depth = (bary * corner[f, :, 2]).sum(axis=1)
-        far_first = np.argsort(depth, kind="stable")  # the nearest is written last
-        far_first = far_first[depth[far_first] > nearest[pixel[far_first]]]
-        nearest[pixel[far_first]] = depth[far_first]
-        face_at[pixel[far_first]] = f[far_first]
-        bary_at[pixel[far_first]] = bary[far_first]
-    return face_at, bary_at, nearest
-
-
-def stroke(points, radius, nearest, width, height, bias):
-    """Pixels of a polyline on the surface that nothing hides."""
-    drawn = np.zeros(width * height, bool)
-    disk = [(x, y) for x in range(-radius, radius + 1) for y in range(-radius, radius + 1) if x * x + y * y <= radius**2]
-    for a, b in zip(points[:-1], points[1:]):
-        steps = max(1, int(np.abs((b - a)[:2]).max()))
-        p = a + np.linspace(0, 1, steps, endpoint=False)[:, None] * (b - a)
-        for dx, dy in disk:
-            x, y = np.round(p[:, 0]).astype(int) + dx, np.round(p[:, 1]).astype(int) + dy
-            seen = (x >= 0) & (x < width) & (y >= 0) & (y < height)
-            pixel = (y * width + x)[seen]
-            drawn[pixel[p[seen, 2] + bias > nearest[pixel]]] = True
-    return drawn & np.isfinite(nearest)
-
-
-def blend(colour, other, amount):
-    return colour + np.clip(amount, 0, 1)[:, None] * (np.asarray(other, float) - colour)
-
-
-def gradients(screen, faces):
-    """Per face, how the three barycentric coordinates change with screen x and y."""
-    a, b, c = (screen[faces[:, k], :2] for k in range(3))
-    area = (b[:, 0] - a[:, 0]) * (c[:, 1] - a[:, 1]) - (b[:, 1] - a[:, 1]) * (c[:, 0] - a[:, 0])
-    opposite = np.stack([c - b, a - c, b - a], axis=1)
-    return np.stack([-opposite[..., 1], opposite[..., 0]], axis=2) / area[:, None, None]
-
-
-def render(mesh, view, smooth=True, edges=False, grid=0, seam=False, inside=CLAY):
-    """edges: outline every face. grid: draw each grid-th parameter line. seam: draw the square's
-    border. inside: the colour of back faces."""
-    ss = SUPERSAMPLING
-    width, height = view.size[0] * ss, view.size[1] * ss
-    p = (mesh.positions @ view.rotation.T - view.centre) * view.scale * ss
-    screen = np.stack([width / 2 + p[:, 0], height / 2 - p[:, 1], p[:, 2]], axis=1)
-    face_at, bary, nearest = scan(screen, mesh.faces, width, height)
-    hit = np.flatnonzero(face_at >= 0)
-    f, bary = face_at[hit], bary[hit]
-
-    flat = unit(mesh.face_normals() @ view.rotation.T)[f]
-    back = flat[:, 2] < 0
-    normal = flat
-    if smooth:
-        normal = unit((bary[:, :, None] * (mesh.vertex_normals() @ view.rotation.T)[mesh.faces[f]]).sum(axis=1))
-    normal = np.where((normal[:, 2] < 0)[:, None], -normal, normal)
-    key, fill = unit(np.array([-0.5, 0.7, 0.65])), unit(np.array([0.8, 0.1, 0.4]))
-    light = 0.2 + 0.85 * np.maximum(normal @ key, 0) + 0.15 * np.maximum(normal @ fill, 0)
-    shine = np.maximum(normal @ unit(key + [0, 0, 1]), 0) ** 40
-    base = np.where(back[:, None], inside, CLAY).astype(float)
-    colour = base * light[:, None] + 28 * shine[:, None]
-
-    if edges or grid:
-        g = gradients(screen, mesh.faces)[f]
-    if edges:
-        pixels = (bary / np.maximum(np.linalg.norm(g, axis=2), 1e-12)).min(axis=1) / ss
-        colour = blend(colour, LINE, 0.8 * (1.05 - pixels))
-    if grid:
-        corners, _ = mesh.grid_coordinates()
-        st = (bary[:, :, None] * corners[f]).sum(axis=1)
-        slope = np.linalg.norm(np.einsum("fkc,fkx->fcx", corners[f], g), axis=2)
-        away = np.abs(st - grid * np.round(st / grid)) / np.maximum(slope, 1e-12) / ss
-        colour = blend(colour, LINE, 0.85 * (1.15 - away.min(axis=1)))
-    if seam:
-        drawn = stroke(screen[mesh.border()], 2 * ss - 1, nearest, width, height, bias=0.01 * width)
-        colour[drawn[hit]] = SEAM
-
-    out = np.full((width * height, 3), PAPER, float)
-    out[hit] = np.clip(colour, 0, 255)
-    out = out.reshape(height // ss, ss, width // ss, ss, 3).mean(axis=(1, 3))
-    return Image.fromarray(np.round(out).astype(np.uint8))
-
-
-# ---- pages ---------------------------------------------------------------------------------------------------
-
-def row(panels, captions=None, gap=14):
-    font = ImageFont.load_default()
-    for name in ("DejaVuSans.ttf", "/usr/share/fonts/truetype/dejavu/DejaVuSans.ttf"):
-        try:
-            font = ImageFont.truetype(name, 13)
-            break
-        except OSError:
-            pass
-    foot = 24 if captions else 0
-    width = sum(p.width for p in panels) + gap * (len(panels) - 1)
-    page = Image.new("RGB", (width, max(p.height for p in panels) + foot), PAPER)
-    draw = ImageDraw.Draw(page)
-    x = 0
-    for k, panel in enumerate(panels):
-        page.paste(panel, (x, page.height - foot - panel.height))
-        if captions:
-            room = draw.textlength(captions[k], font=font)
-            draw.text((x + (panel.width - room) / 2, page.height - foot + 5), captions[k], fill=(60, 60, 60), font=font)
-        x += panel.width + gap
-    return page
-
-
-def fewer_bits(image):
-    """Six bits a channel: no eye sees the rest, and the file is much smaller."""
-    return image.point(lambda value: value & 0xFC | value >> 6)
-
-
-def save(page, name, colours=256):
-    """A palette keeps renderings of one material small; colours=0 saves all colours."""
-    path = IMAGES / name
-    if colours:
-        page = page.quantize(colours, method=Image.MEDIANCUT, dither=Image.NONE)
-    page.save(path, optimize=True)
-    print(f"{path.relative_to(ROOT)}: {page.width} x {page.height}, {path.stat().st_size} bytes")
+from renderer import (IMAGES, INSIDE, ROOT, View, board, column, facing, few_colours, fewer_bits, read_ply, render, row,
+                      save, square_panel, stretch_colours, stretch_scale, turn)
 
 
 class Studio:
@@ -292,8 +54,18 @@ class Studio:
         return read_ply(path)
 
 
+    def mapped(self, mesh, *options):
+        """What gimparam makes of a mesh: the opened surface, and the report."""
+        stem = Path(mesh).stem + "-map-" + "-".join(str(o).strip("-") for o in options)
+        path, report = self.path(stem + ".ply"), self.path(stem + ".json")
+        if not report.exists():
+            self.run("gimparam", "--quiet", *options, "--json", report, mesh, path)
+        return read_ply(path), json.loads(report.read_text())
+
+
 BUNNY_VIEW = turn(yaw=12, pitch=8)
 GENUS_VIEW = turn(yaw=20, pitch=-42)
+Z_UP = np.array([[1, 0, 0], [0, 0, 1], [0, -1, 0]])  # for meshes that stand along z
 
 
 def bunny(studio):
@@ -369,11 +141,65 @@ def heatmap(studio):
     studio.decoded(studio.encoded(studio.bunny, "--bytes", 1500))
     studio.run("gimrd", "compare", "--heatmap", studio.path("heatmap.png"), studio.bunny, studio.path("decoded.ply"))
     picture = Image.open(studio.path("heatmap.png")).convert("RGB")
-    # A median cut would leave the rare bright colours of the bar out.
-    save(picture.quantize(256, method=Image.MAXCOVERAGE, dither=Image.NONE), "heatmap.png", colours=0)
+    save(picture, "heatmap.png", method=Image.MAXCOVERAGE)
 
 
-PICTURES = {f.__name__: f for f in (bunny, levels, rates, seam, genus, lines, topology, heatmap)}
+def cut_stages(studio):
+    """The cut as it is extended to one tip after the other, and the square of each stage."""
+    name, most, rotation = "man", 3, turn(yaw=155, pitch=8) @ Z_UP
+    above, below, captions = [], [], []
+    for tips in range(most + 1):
+        mesh, report = studio.mapped(studio.fetched(name), "--density", "even", "--extrema", tips)
+        colours = stretch_colours(mesh.stretch)
+        above.append(render(mesh, View(mesh, rotation, 210, 290), seam="through", tips=True))
+        below.append(square_panel(mesh, 210, colours))
+        cut = ("initial cut", "one extremum", "two extrema", "three extrema")[report["cut"]["extrema"]]
+        captions.append(f"{cut}: {report['stretch_efficiency']:.2f}")
+    parts = [few_colours(row(above)), few_colours(row(below, captions)), stretch_scale(row(above).width)]
+    save(column(parts), "cut-stages.png", colours=0)
+
+
+def stretch(studio):
+    """Local stretch on the bunny, of a linear map and of ours."""
+    maps = (("mean values", ["--param", "mvc"]), ("stretch, even", ["--density", "even"]), ("stretch, curvature", []))
+    above, below, captions = [], [], []
+    for name, options in maps:
+        mesh, report = studio.mapped(studio.bunny, *options)
+        colours = stretch_colours(mesh.stretch)
+        above.append(render(mesh, View(mesh, BUNNY_VIEW, 300, 280), colours=colours, grid=1 / 32, seam=True))
+        below.append(square_panel(mesh, 250, colours))
+        captions.append(f"{name}: {report['stretch_efficiency']:.2f}")
+    parts = [few_colours(row(above), 64), few_colours(row(below, captions, gap=64)), stretch_scale(row(above).width)]
+    save(column(parts), "stretch.png", colours=0)
+
+
+def maps(studio):
+    """Every map to the square, on a part with the same cut and layout."""
+    panels, captions = [], []
+    for param in ("tutte", "mvc", "conformal", "stretch"):
+        mesh, report = studio.mapped(studio.fetched("fandisk"), "--param", param, "--density", "even")
+        view = View(mesh, turn(yaw=-60, pitch=20), 220, 222)
+        panels.append(render(mesh, view, colours=stretch_colours(mesh.stretch), grid=1 / 32, smooth=False))
+        captions.append(f"{param}: {report['stretch_efficiency']:.2f}")
+    page = row(panels, captions)
+    save(column([page, stretch_scale(page.width)]), "maps.png", method=Image.MAXCOVERAGE)
+
+
+def layouts(studio):
+    """The bunny in both layouts: a board of fields on the square, and where they come to lie."""
+    rows = []
+    for layout in ("cut", "octahedral"):
+        mesh = studio.decoded(studio.encoded(studio.bunny, "--layout", layout, "--raw", "float", "--no-fit"))
+        corners, n = mesh.grid_coordinates()
+        colours = board(corners.mean(axis=1) / n)
+        panels = [square_panel(mesh.on_square(), 190, colours)]
+        panels += [render(mesh, View(mesh, turn(yaw=yaw, pitch=8), 330, 280), colours=colours, seam=True)
+                   for yaw in (12, 192)]
+        rows.append(row(panels, [f"--layout {layout}", "", ""]))
+    save(column(rows), "layouts.png")
+
+
+PICTURES = {f.__name__: f for f in (bunny, levels, rates, seam, genus, lines, topology, heatmap, cut_stages, stretch, maps, layouts)}
 
 
 def main():
