@@ -45,7 +45,8 @@ public:
             return octahedral(tips);
         }
         if (!sphere) return alongCut(extrema(FlattenEffort::Trial));
-        if (options_.layout == SquareLayout::Cut || options_.extrema) return alongCut(extrema(FlattenEffort::Full));
+        if (options_.layout == SquareLayout::Cut || options_.extrema)
+            return alongCut(extrema(FlattenEffort::Full));
         return starOrCut();
     }
 

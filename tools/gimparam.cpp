@@ -10,8 +10,10 @@
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
+#include <algorithm>
 #include <cmath>
 #include <iostream>
+#include <map>
 
 namespace {
 
@@ -40,16 +42,14 @@ void addChoice(CLI::App& app, const char* name, std::map<std::string, Value> val
 std::optional<int> parseArguments(int argc, char** argv, Arguments& a)
 {
     CLI::App app{"Cuts a triangle mesh (OBJ, PLY, OFF, STL) open and maps it to the unit square, as gimenc "
-                 "does before it\n"
-                 "samples, and writes the surface with its map and its cut.",
+                 "does before it samples, and writes the surface with its map and its cut.",
                  "gimparam"};
     app.footer("Exit codes: 0 done, 1 input refused, 2 usage, 3 target not reachable.");
     app.set_version_flag("--version", GIMG_VERSION);
     app.add_option("INPUT", a.input, "mesh to map")->required();
     app.add_option("OUTPUT", a.output,
                    "to write: .obj (texture coordinates, the cut as lines), or .ply (opened along the cut, "
-                   "with s and t; "
-                   "each face's stretch as quality)")
+                   "with s and t; each face's stretch as quality)")
         ->required();
     app.add_option("--grid", a.unfold.grid,
                    "samples a side that the layout is made for, 2^j + 1 (default: 257)");

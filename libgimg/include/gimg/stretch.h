@@ -19,9 +19,9 @@ double quarticStretchEnergy(const Mesh& mesh, const std::vector<Vec2>& st);
 /// A^2 / stretchEnergy with A the surface area: 1 for an isometry, less the more unevenly samples spread.
 double stretchEfficiency(const Mesh& mesh, const std::vector<Vec2>& st);
 
-/// Local stretch of every face, L2(T) / sqrt(A) with A the surface area: 1 everywhere for an isometry of a square, up to
-/// scale; the greater, the farther apart samples land. Its mean square over the surface is 1 / stretchEfficiency.
-/// Infinite for a triangle that is flipped or degenerate in the plane.
+/// Local stretch of every face, L2(T) / sqrt(A) with A the surface area: 1 everywhere for an isometry of a
+/// square, up to scale; the greater, the farther apart samples land. Its mean square over the surface is 1 /
+/// stretchEfficiency. Infinite for a triangle that is flipped or degenerate in the plane.
 std::vector<double> faceStretch(const Mesh& mesh, const std::vector<Vec2>& st);
 
 /// Number of triangles whose signed area in the plane is not positive.

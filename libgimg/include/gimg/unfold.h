@@ -23,8 +23,9 @@ struct UnfoldOptions : BorderOptions
 {
     MapKind param = MapKind::Stretch; ///< layouts and extrema are judged by Stretch whatever it is
     Density density = Density::Curvature;
-    /// How many of findExtrema's vertices the cut is extended to, the first ones, whether or not that helps (fewer if
-    /// fewer are found): the iterations of the cut one by one. Implies SquareLayout::Cut. None: as many as help.
+    /// How many of findExtrema's vertices the cut is extended to, the first ones, whether or not that helps
+    /// (fewer if fewer are found): the iterations of the cut one by one. Implies SquareLayout::Cut. None: as
+    /// many as help.
     std::optional<int> extrema = std::nullopt;
 };
 
@@ -48,7 +49,8 @@ struct UnfoldJudge
 /// @param mesh   connected, manifold, oriented
 /// @param judge  if there is none, less of quarticStretchEnergy is better
 /// Errors: those of layOutBorder and mapToSquare; BadArgument where the octahedral layout is asked for
-/// and the surface is not closed or has handles, or a number of extrema is; TargetUnreachable where no star was found.
+/// and the surface is not closed or has handles, or a number of extrema is; TargetUnreachable where no star
+/// was found.
 Result<Unfolded> unfold(const Mesh& mesh, const UnfoldOptions& options, const UnfoldJudge& judge = {},
                         const UnfoldProgress& progress = {});
 
