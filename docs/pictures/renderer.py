@@ -63,9 +63,8 @@ class Mesh:
 
     def tips(self):
         """Points where the cut of a closed surface ends: the vertices on it that it does not double."""
-        _, first, count = np.unique(self.positions[self.border_edges()[:, 0]], axis=0, return_index=True,
-                                    return_counts=True)
-        return self.positions[self.border_edges()[first[count == 1], 0]]
+        points, count = np.unique(self.positions[self.border_edges()[:, 0]], axis=0, return_counts=True)
+        return points[count == 1]
 
     def cut_lines(self):
         """Polylines of vertices: the border of the square."""
@@ -139,7 +138,8 @@ def facing(direction):
 class View:
     """An orthographic camera that shows all of the mesh, unless told to come closer."""
 
-    def __init__(self, mesh, rotation, width, height, zoom=1.0, at=None, more=()):  # at: the point in the middle
+    def __init__(self, mesh, rotation, width, height, zoom=1.0, at=None, more=()):
+        """at: the point in the middle. more: lists of points to show with the mesh."""
         self.rotation, self.size = rotation, (width, height)
         p = np.concatenate([mesh.positions, *more]) @ rotation.T
         low, high = p.min(axis=0), p.max(axis=0)
