@@ -62,7 +62,7 @@ Bytes waveletContent(const TransformedImage& image, float step)
 
 // Tangential steps grow by half an octave a level, to eight times the normal ones; those of small and large
 // cells differ by at most 1.25. Found by trial on scanned and designed surfaces.
-constexpr std::uint8_t kRatios = 2 | 6 << 4;
+constexpr std::uint8_t kRatios = 3 | 6 << 4;
 constexpr std::uint8_t kAreaLimit = 4;
 
 SurfaceParameters parametersOf(float step)

@@ -141,7 +141,7 @@ void codeSurface(Coder& coder, SurfaceModels& models, const SurfaceParameters& p
         }
         const double* planes[kComponents] = {work.surface[0], work.surface[1], work.surface[2]};
         level.meanArea = meanCellArea(planes, n);
-        level.tangentialRatio = tangentialRatio(parameters, level.index);
+        level.largestRatio = largestTangentialRatio(parameters, level.index);
         pick.begin(level);
         if (codeLevel(coder, models, parameters, work, level, pick)) {
             for (unsigned c = 0; c < kComponents; ++c) {

@@ -53,17 +53,11 @@ public:
     {
     }
 
-    void begin(const SurfaceLevel& level)
-    {
-        exact_ = &surface_.levels[level.index];
-        tangentialRatio_ = level.tangentialRatio;
-    }
+    void begin(const SurfaceLevel& level) { exact_ = &surface_.levels[level.index]; }
 
-    bool isEmpty(unsigned orientation, unsigned component) const
+    bool isEmpty(unsigned orientation, unsigned) const
     {
-        const double step =
-            parameters_.step * (component == 0 ? 1 : tangentialRatio_) / parameters_.areaLimit;
-        return exact_->largest[orientation] < kEmptyBelow * step;
+        return exact_->largest[orientation] < kEmptyBelow * parameters_.step / parameters_.areaLimit;
     }
 
     std::int32_t operator()(RangeEncoder& coder, const DetailContext& context, unsigned component,
@@ -85,7 +79,6 @@ private:
     const TransformedSurface& surface_;
     const SurfaceParameters& parameters_;
     const TransformedSurface::Level* exact_ = nullptr;
-    double tangentialRatio_ = 1;
 };
 
 } // namespace
