@@ -7,6 +7,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <memory>
 
 namespace gimg::codec {
@@ -32,6 +33,8 @@ struct EncoderMemory
             work.parents[c] = integers(codedSize(grid));
         }
         work.border = numbers(2 * std::size_t{borderSize(grid)});
+        blocks_.resize(BlockMap::memory(grid));
+        work.blocks = BlockMap(blocks_.data());
     }
 
     SurfaceWork work;
@@ -42,6 +45,7 @@ private:
 
     std::vector<std::vector<double>> numbers_;
     std::vector<std::vector<std::int32_t>> integers_;
+    std::vector<std::uint8_t> blocks_;
 };
 
 /// Chooses and codes one detail after the other.
@@ -53,7 +57,32 @@ public:
     {
     }
 
-    void begin(const SurfaceLevel& level) { exact_ = &surface_.levels[level.index]; }
+    void begin(const SurfaceLevel& level, const double* const (&prediction)[kComponents])
+    {
+        exact_ = &surface_.levels[level.index];
+        static const double A = getenv("A") ? atof(getenv("A")) : 4.5, T = getenv("T") ? atof(getenv("T")) : 0, B=getenv("B")?atof(getenv("B")):2;
+        const std::uint32_t n = level.size;
+        side_ = BlockMap::side(n);
+        worth_.assign(std::size_t{2} * side_ * side_, 0);
+        for (unsigned orientation = 0; orientation < 3; ++orientation)
+            for (std::uint32_t j = firstRow(orientation); j < n; j += 2)
+                for (std::uint32_t i = firstColumn(orientation); i < n; i += 2) {
+                    if (!sharedDetail(level, orientation, i, j).isFirst) continue;
+                    const Frame frame = frameAt(prediction, level, parameters_, orientation, i, j);
+                    double* worths = &worth_[2 * (std::min(j / BlockMap::kBlock, side_ - 1) * std::size_t{side_} +
+                                           std::min(i / BlockMap::kBlock, side_ - 1))];
+                    for (unsigned c = 0; c < kComponents; ++c) {
+                        const double size = std::abs(exactIn(frame, c, j * std::size_t{n} + i));
+                        const double nearest = std::floor(size + 0.5);
+                        if (nearest == 0) continue;
+                        const double mended = size * size - (size - nearest) * (size - nearest);
+                        worths[c == 0 ? 0 : 1] += std::max(0.0, mended - kWorthOfBit * (A + B * std::log2(nearest)));
+                    }
+                }
+        for (double& worth : worth_) worth -= kWorthOfBit * T;
+    }
+
+    bool isFilled(std::uint32_t bi, std::uint32_t bj, unsigned direction) const { return worth_[2 * (bj * std::size_t{side_} + bi) + direction] > 0; }
 
     bool isEmpty(unsigned orientation, unsigned) const
     {
@@ -63,8 +92,7 @@ public:
     std::int32_t operator()(RangeEncoder& coder, const DetailContext& context, unsigned component,
                             std::size_t index, const Frame& frame) const
     {
-        const Vector detail = {exact_->detail[0][index], exact_->detail[1][index], exact_->detail[2][index]};
-        const double exact = dot(frame.axis[component], detail) / frame.step[component];
+        const double exact = exactIn(frame, component, index);
         const double size = std::min(std::abs(exact), static_cast<double>(kMaxDetail - 1));
         const std::int32_t sign = exact < 0 ? -1 : 1;
         const std::int32_t magnitude = thriftyMagnitude(size, kWorthOfBit, [&](std::int32_t candidate) {
@@ -76,8 +104,17 @@ public:
     }
 
 private:
+    // A detail's component, in steps.
+    double exactIn(const Frame& frame, unsigned component, std::size_t index) const
+    {
+        const Vector detail = {exact_->detail[0][index], exact_->detail[1][index], exact_->detail[2][index]};
+        return dot(frame.axis[component], detail) / frame.step[component];
+    }
+
     const TransformedSurface& surface_;
     const SurfaceParameters& parameters_;
+    std::vector<double> worth_; // of the level's blocks
+    std::uint32_t side_ = 0;
     const TransformedSurface::Level* exact_ = nullptr;
 };
 

@@ -13,6 +13,10 @@ constexpr unsigned kMagnitudeBits = 3; ///< before the escape
 struct SurfaceModels
 {
     BitModel bandIsEmpty[kComponents][kLevels];
+    BitModel blockByLevel[kDirections][2][kLevels][7];
+    BitModel blockByParents[kDirections][2][7][14];
+    BitModel blockByRing[kDirections][2][10][14];
+    MixWeights<3> blockWeights[kDirections][2];
     BitModel nearHere[18][8][kDirections][kMagnitudeBits];
     BitModel nearParent[18][10][2][kDirections][kMagnitudeBits];
     BitModel eachNear[8][8][8][kDirections][kMagnitudeBits];
