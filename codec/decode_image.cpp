@@ -240,7 +240,8 @@ SurfaceParameters surfaceParameters(const ImageHeader& header)
     parameters.step = static_cast<double>(header.step);
     parameters.rise = header.ratios & 0x0Fu;
     parameters.most = 2 * (header.ratios >> 4);
-    parameters.areaLimit = 1 + header.areaLimit / 16.0;
+    parameters.areaLimit = 1 + (header.limits & 0x0Fu) / 4.0;
+    parameters.flatness = powerOfQuarters(2 * (header.limits >> 4));
     return parameters;
 }
 
@@ -262,7 +263,7 @@ ReadStatus readImageHeader(format::ByteSpan content, ImageKind image, ImageHeade
     } else if (header->coding == GIM_CODING_SURFACE) {
         header->step = in.f32();
         header->ratios = in.u8();
-        header->areaLimit = in.u8();
+        header->limits = in.u8();
     } else if (header->coding == GIM_CODING_RAW12) {
         for (float& least : header->least) least = in.f32();
         header->step = in.f32();

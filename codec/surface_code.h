@@ -27,7 +27,6 @@ inline std::size_t codedIndex(std::uint32_t grid, std::uint32_t i, std::uint32_t
     return (j + kCodedMargin) * codedPitch(grid) + i + kCodedMargin;
 }
 
-
 /// The positions of an orientation's band in a level.
 constexpr std::uint32_t firstColumn(unsigned orientation) { return orientation == Vertical ? 0 : 1; }
 constexpr std::uint32_t firstRow(unsigned orientation) { return orientation == Horizontal ? 0 : 1; }
@@ -40,7 +39,8 @@ struct SharedDetail
     bool isFirst;
 };
 
-inline SharedDetail sharedDetail(const SurfaceLevel& level, unsigned orientation, std::uint32_t i, std::uint32_t j)
+inline SharedDetail sharedDetail(const SurfaceLevel& level, unsigned orientation, std::uint32_t i,
+                                 std::uint32_t j)
 {
     const std::uint32_t n = level.size, last = n - 1;
     SharedDetail shared = {GluedBorder::kNoMate, true};
@@ -69,11 +69,12 @@ void codeBlocks(Coder& coder, SurfaceModels& models, const SurfaceWork& work, co
             std::uint64_t below[kDirections] = {}, ring[kDirections] = {};
             if (level.index > 0)
                 for (unsigned c = 0; c < kComponents; ++c) {
-                    const std::int32_t* corner = work.parents[c] +
-                        codedIndex(m, bi * BlockMap::kBlock / 2, bj * BlockMap::kBlock / 2);
+                    const std::int32_t* corner =
+                        work.parents[c] + codedIndex(m, bi * BlockMap::kBlock / 2, bj * BlockMap::kBlock / 2);
                     for (int dj = -2; dj <= kHalf + 2; ++dj)
                         for (int di = -2; di <= kHalf + 2; ++di) {
-                            const std::uint64_t size = sizeAt(corner + dj * static_cast<std::ptrdiff_t>(codedPitch(m)), di);
+                            const std::uint64_t size =
+                                sizeAt(corner + dj * static_cast<std::ptrdiff_t>(codedPitch(m)), di);
                             const bool inside = di >= 0 && di <= kHalf && dj >= 0 && dj <= kHalf;
                             (inside ? below : ring)[c == 0 ? 0 : 1] += size;
                         }
@@ -95,8 +96,8 @@ void codeBlocks(Coder& coder, SurfaceModels& models, const SurfaceWork& work, co
 /// Codes the details of one level. On entry work.surface holds the prediction and work.detail zeros; on
 /// return work.detail holds the details as vectors.
 /// @param pick  pick(coder, context, component, index in the level, frame) codes a detail with
-/// codeSurfaceDetail() and returns it; an encoder knows what holds zeros only: pick.isEmpty(orientation, component)
-/// of a band, pick.isFilled(bi, bj, direction) of a block
+/// codeSurfaceDetail() and returns it; an encoder knows what holds zeros only: pick.isEmpty(orientation,
+/// component) of a band, pick.isFilled(bi, bj, direction) of a block
 /// @return whether any detail is not 0
 template <class Coder, class Pick>
 bool codeLevel(Coder& coder, SurfaceModels& models, const SurfaceParameters& parameters, SurfaceWork& work,
@@ -107,17 +108,20 @@ bool codeLevel(Coder& coder, SurfaceModels& models, const SurfaceParameters& par
     bool isEmpty[3][kComponents], any = false;
     for (unsigned orientation = 0; orientation < 3; ++orientation)
         for (unsigned c = 0; c < kComponents; ++c) {
-            isEmpty[orientation][c] = coder.bit(models.bandIsEmpty[c][level.index], pick.isEmpty(orientation, c));
+            isEmpty[orientation][c] =
+                coder.bit(models.bandIsEmpty[c][level.index], pick.isEmpty(orientation, c));
             any = any || !isEmpty[orientation][c];
         }
     if (!any) return false;
     BlockMap& blocks = work.blocks;
-    codeBlocks(coder, models, work, level, blocks, [&](std::uint32_t bi, std::uint32_t bj, unsigned d) { return pick.isFilled(bi, bj, d); });
+    codeBlocks(coder, models, work, level, blocks,
+               [&](std::uint32_t bi, std::uint32_t bj, unsigned d) { return pick.isFilled(bi, bj, d); });
 
     DetailNeighbourhood around;
     around.pitch = codedPitch(n);
     around.parentPitch = codedPitch(m);
-    const auto codeOne = [&](unsigned orientation, std::uint32_t i, std::uint32_t j, const bool (&isCoded)[kComponents]) {
+    const auto codeOne = [&](unsigned orientation, std::uint32_t i, std::uint32_t j,
+                             const bool(&isCoded)[kComponents]) {
         const SharedDetail shared = sharedDetail(level, orientation, i, j);
         if (!shared.isFirst) return;
         const std::size_t place = j * std::size_t{n} + i;
@@ -162,10 +166,12 @@ bool codeLevel(Coder& coder, SurfaceModels& models, const SurfaceParameters& par
             for (std::uint32_t bi = 0; bi < side; ++bi) {
                 const bool normal = blocks.isFilled(bi, bj, 0), tangents = blocks.isFilled(bi, bj, 1);
                 const bool* empty = isEmpty[orientation];
-                const bool isCoded[kComponents] = {normal && !empty[0], tangents && !empty[1], tangents && !empty[2]};
+                const bool isCoded[kComponents] = {normal && !empty[0], tangents && !empty[1],
+                                                   tangents && !empty[2]};
                 if (!isCoded[0] && !isCoded[1] && !isCoded[2]) continue;
                 const std::uint32_t end = bi + 1 == side ? n : (bi + 1) * BlockMap::kBlock;
-                for (std::uint32_t i = bi * BlockMap::kBlock + i0; i < end; i += 2) codeOne(orientation, i, j, isCoded);
+                for (std::uint32_t i = bi * BlockMap::kBlock + i0; i < end; i += 2)
+                    codeOne(orientation, i, j, isCoded);
             }
         }
     }

@@ -7,7 +7,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <cstdlib>
 #include <memory>
 
 namespace gimg::codec {
@@ -18,6 +17,8 @@ namespace {
 constexpr double kWorthOfBit = 0.11;
 /// A band none of whose details reaches this part of a step is not worth coding.
 constexpr double kEmptyBelow = 0.6;
+/// What a detail that is not 0 takes, in bits: that of one step, and what an octave adds.
+constexpr double kBitsOfDetail = 6, kBitsOfOctave = 2;
 
 struct EncoderMemory
 {
@@ -60,7 +61,6 @@ public:
     void begin(const SurfaceLevel& level, const double* const (&prediction)[kComponents])
     {
         exact_ = &surface_.levels[level.index];
-        static const double A = getenv("A") ? atof(getenv("A")) : 4.5, T = getenv("T") ? atof(getenv("T")) : 0, B=getenv("B")?atof(getenv("B")):2;
         const std::uint32_t n = level.size;
         side_ = BlockMap::side(n);
         worth_.assign(std::size_t{2} * side_ * side_, 0);
@@ -69,20 +69,24 @@ public:
                 for (std::uint32_t i = firstColumn(orientation); i < n; i += 2) {
                     if (!sharedDetail(level, orientation, i, j).isFirst) continue;
                     const Frame frame = frameAt(prediction, level, parameters_, orientation, i, j);
-                    double* worths = &worth_[2 * (std::min(j / BlockMap::kBlock, side_ - 1) * std::size_t{side_} +
-                                           std::min(i / BlockMap::kBlock, side_ - 1))];
+                    double* worths =
+                        &worth_[2 * (std::min(j / BlockMap::kBlock, side_ - 1) * std::size_t{side_} +
+                                     std::min(i / BlockMap::kBlock, side_ - 1))];
                     for (unsigned c = 0; c < kComponents; ++c) {
                         const double size = std::abs(exactIn(frame, c, j * std::size_t{n} + i));
                         const double nearest = std::floor(size + 0.5);
                         if (nearest == 0) continue;
                         const double mended = size * size - (size - nearest) * (size - nearest);
-                        worths[c == 0 ? 0 : 1] += std::max(0.0, mended - kWorthOfBit * (A + B * std::log2(nearest)));
+                        worths[c == 0 ? 0 : 1] += std::max(
+                            0.0, mended - kWorthOfBit * (kBitsOfDetail + kBitsOfOctave * std::log2(nearest)));
                     }
                 }
-        for (double& worth : worth_) worth -= kWorthOfBit * T;
     }
 
-    bool isFilled(std::uint32_t bi, std::uint32_t bj, unsigned direction) const { return worth_[2 * (bj * std::size_t{side_} + bi) + direction] > 0; }
+    bool isFilled(std::uint32_t bi, std::uint32_t bj, unsigned direction) const
+    {
+        return worth_[2 * (bj * std::size_t{side_} + bi) + direction] > 0;
+    }
 
     bool isEmpty(unsigned orientation, unsigned) const
     {

@@ -17,13 +17,18 @@ struct SurfaceParameters
     unsigned most = 12;      ///< quarter octaves at which that ends
 };
 
+/// 2^(quarters / 4).
+inline double powerOfQuarters(unsigned quarters)
+{
+    constexpr double kQuarters[4] = {1.0, 1.189207115002721, 1.4142135623730951, 1.6817928305074292};
+    return kQuarters[quarters % 4] * static_cast<double>(1u << quarters / 4);
+}
+
 /// The largest ratio of tangential steps to normal ones at a level of details, 0 for the coarsest.
 inline double largestTangentialRatio(const SurfaceParameters& parameters, unsigned level)
 {
-    constexpr double kQuarters[4] = {1.0, 1.189207115002721, 1.4142135623730951, 1.6817928305074292};
     const unsigned grown = level * parameters.rise;
-    const unsigned exponent = grown < parameters.most ? grown : parameters.most;
-    return kQuarters[exponent % 4] * static_cast<double>(1u << exponent / 4);
+    return powerOfQuarters(grown < parameters.most ? grown : parameters.most);
 }
 
 struct Vector
@@ -42,9 +47,9 @@ inline Vector cross(Vector a, Vector b)
 /// A level while its details are coded.
 struct SurfaceLevel
 {
-    std::uint32_t size = 0; ///< samples a side, with the details
-    unsigned index = 0;     ///< 0 for the coarsest
-    double meanArea = 0;    ///< of a cell of the prediction
+    std::uint32_t size = 0;              ///< samples a side, with the details
+    unsigned index = 0;                  ///< 0 for the coarsest
+    double meanArea = 0;                 ///< of a cell of the prediction
     double largestRatio = 1;             ///< of tangential steps to normal ones
     const GluedBorder* border = nullptr; ///< nullptr: this level's details are not glued
 };
@@ -147,15 +152,19 @@ inline Frame frameAt(const double* const (&planes)[kComponents], const SurfaceLe
     const std::uint32_t n = level.size, last = n - 1;
     const std::size_t at = j * std::size_t{n} + i;
     const auto pick = [&](std::size_t k) { return sampleOf(planes, k); };
-    const auto bendAlong = [&](std::size_t apart) { return pick(at + apart) + pick(at - apart) - 2.0 * pick(at); };
+    const auto bendAlong = [&](std::size_t apart) {
+        return pick(at + apart) + pick(at - apart) - 2.0 * pick(at);
+    };
     const Vector none = {0, 0, 0};
-    const Vector alongI = i > 0 && i < last ? bendAlong(1) : none, alongJ = j > 0 && j < last ? bendAlong(n) : none;
+    const Vector alongI = i > 0 && i < last ? bendAlong(1) : none,
+                 alongJ = j > 0 && j < last ? bendAlong(n) : none;
     // Where the surface is flat, a sample may err along it without being seen.
     const double bent = dot(alongI, alongI) + dot(alongJ, alongJ);
     const double flat = parameters.flatness * parameters.flatness * area;
     const double most = level.largestRatio * level.largestRatio;
-    frame.step[1] = frame.step[0] *
-                    (flat >= most * bent ? level.largestRatio : flat > bent ? std::sqrt(flat / bent) : 1.0);
+    frame.step[1] = frame.step[0] * (flat >= most * bent ? level.largestRatio
+                                     : flat > bent       ? std::sqrt(flat / bent)
+                                                         : 1.0);
     frame.step[2] = frame.step[1];
 
     const Vector second = orientation == Horizontal ? alongI
