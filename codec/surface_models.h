@@ -19,7 +19,7 @@ struct SurfaceModels
     MixWeights<3> blockWeights[kDirections][2];
     BitModel eachNear[8][8][8][kDirections][kMagnitudeBits];
     BitModel everything[24][kComponents][kMagnitudeBits];
-    BitModel place[kLevels][3][10][kDirections][kMagnitudeBits];
+    BitModel bent[14][8][kDirections][kMagnitudeBits];
     BitModel family[10][12][3][kDirections][kMagnitudeBits];
     MixWeights<kMagnitudeModels> byActivity[24][kDirections][kMagnitudeBits];
     MixWeights<kMagnitudeModels> byPlace[kLevels][3][kDirections][kMagnitudeBits];
@@ -93,7 +93,7 @@ inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbou
             others += (sizeAt(around.near[c], -2) + sizeAt(around.near[c], -2 * row) + 1) / 2;
     }
     const double size = bend < 0 ? -bend : bend;
-    const unsigned bent = activityClass(size < 16384.0 ? static_cast<std::uint64_t>(size * 4) : 65536, 7);
+    const unsigned bent = activityClass(size < 16384.0 ? static_cast<std::uint64_t>(size * 4) : 65536, 13);
 
     const unsigned a = activityClass(near, 17);
     const unsigned p = activityClass(2 * parent + parentNear, 9), s = activityClass(siblings, 11);
@@ -102,7 +102,7 @@ inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbou
     DetailContext c;
     c.magnitude[0] = models.eachNear[w][n][d][direction];
     c.magnitude[1] = models.everything[all][component];
-    c.magnitude[2] = models.place[level][orientation][a < 9 ? a : 9][direction];
+    c.magnitude[2] = models.bent[bent][a < 7 ? a : 7][direction];
     c.magnitude[3] = models.family[p][s][orientation][direction];
     c.byActivity = models.byActivity[all][direction];
     c.byPlace = models.byPlace[level][orientation][direction];
@@ -112,7 +112,7 @@ inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbou
                                 [third(q[-2 * row + 2])][direction];
     c.sign[1] =
         &models.signFamily[orientation][third(parentSign)][third(siblingSign)][third(q[-2])][direction];
-    c.sign[2] = &models.signBent[orientation][2 * bent + (bend < 0 ? 1u : 0u)][direction];
+    c.sign[2] = &models.signBent[orientation][2 * (bent < 7 ? bent : 7) + (bend < 0 ? 1u : 0u)][direction];
     c.sign[3] =
         &models.signParentNear[orientation][third(parentSign)][third(q[-4])][third(q[-4 * row])][direction];
     c.signWeights = &models.signWeights[orientation][direction];
