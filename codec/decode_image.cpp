@@ -115,7 +115,7 @@ struct SurfaceMemory
 struct PlainDetails
 {
     void begin(const SurfaceLevel&, const double* const (&)[kComponents]) const {}
-    bool isEmpty(unsigned, unsigned) const { return false; }
+    bool isEmpty() const { return false; }
     bool isFilled(std::uint32_t, std::uint32_t, unsigned) const { return false; }
     std::int32_t operator()(RangeDecoder& decoder, const DetailContext& context, unsigned, std::size_t,
                             const Frame&) const

@@ -98,21 +98,14 @@ void codeBlocks(Coder& coder, SurfaceModels& models, const SurfaceWork& work, co
 /// @param pick  pick(coder, context, component, index in the level, frame) codes a detail with
 /// codeSurfaceDetail() and returns it; an encoder knows what holds zeros only: pick.isEmpty(orientation,
 /// component) of a band, pick.isFilled(bi, bj, direction) of a block
-/// @return whether any detail is not 0
+/// @return whether any block is filled
 template <class Coder, class Pick>
 bool codeLevel(Coder& coder, SurfaceModels& models, const SurfaceParameters& parameters, SurfaceWork& work,
                const SurfaceLevel& level, Pick& pick)
 {
     const std::uint32_t n = level.size, m = n / 2 + 1;
     const double* planes[kComponents] = {work.surface[0], work.surface[1], work.surface[2]};
-    bool isEmpty[3][kComponents], any = false;
-    for (unsigned orientation = 0; orientation < 3; ++orientation)
-        for (unsigned c = 0; c < kComponents; ++c) {
-            isEmpty[orientation][c] =
-                coder.bit(models.bandIsEmpty[c][level.index], pick.isEmpty(orientation, c));
-            any = any || !isEmpty[orientation][c];
-        }
-    if (!any) return false;
+    if (coder.bit(models.levelIsEmpty[level.index], pick.isEmpty())) return false;
     BlockMap& blocks = work.blocks;
     codeBlocks(coder, models, work, level, blocks,
                [&](std::uint32_t bi, std::uint32_t bj, unsigned d) { return pick.isFilled(bi, bj, d); });
@@ -159,16 +152,13 @@ bool codeLevel(Coder& coder, SurfaceModels& models, const SurfaceParameters& par
 
     const std::uint32_t side = blocks.side();
     for (unsigned orientation = 0; orientation < 3; ++orientation) {
-        if (isEmpty[orientation][0] && isEmpty[orientation][1] && isEmpty[orientation][2]) continue;
         const std::uint32_t i0 = firstColumn(orientation);
         for (std::uint32_t j = firstRow(orientation); j < n; j += 2) {
             const std::uint32_t bj = j / BlockMap::kBlock < side ? j / BlockMap::kBlock : side - 1;
             for (std::uint32_t bi = 0; bi < side; ++bi) {
                 const bool normal = blocks.isFilled(bi, bj, 0), tangents = blocks.isFilled(bi, bj, 1);
-                const bool* empty = isEmpty[orientation];
-                const bool isCoded[kComponents] = {normal && !empty[0], tangents && !empty[1],
-                                                   tangents && !empty[2]};
-                if (!isCoded[0] && !isCoded[1] && !isCoded[2]) continue;
+                if (!normal && !tangents) continue;
+                const bool isCoded[kComponents] = {normal, tangents, tangents};
                 const std::uint32_t end = bi + 1 == side ? n : (bi + 1) * BlockMap::kBlock;
                 for (std::uint32_t i = bi * BlockMap::kBlock + i0; i < end; i += 2)
                     codeOne(orientation, i, j, isCoded);

@@ -15,8 +15,6 @@ namespace {
 
 /// What one bit is allowed to mend, in squared steps.
 constexpr double kWorthOfBit = 0.11;
-/// A band none of whose details reaches this part of a step is not worth coding.
-constexpr double kEmptyBelow = 0.6;
 /// What a detail that is not 0 takes, in bits: that of one step, and what an octave adds.
 constexpr double kBitsOfDetail = 6, kBitsOfOctave = 2;
 
@@ -88,9 +86,9 @@ public:
         return worth_[2 * (bj * std::size_t{side_} + bi) + direction] > 0;
     }
 
-    bool isEmpty(unsigned orientation, unsigned) const
+    bool isEmpty() const
     {
-        return exact_->largest[orientation] < kEmptyBelow * parameters_.step / parameters_.areaLimit;
+        return std::none_of(worth_.begin(), worth_.end(), [](double worth) { return worth > 0; });
     }
 
     std::int32_t operator()(RangeEncoder& coder, const DetailContext& context, unsigned component,
@@ -215,11 +213,11 @@ CodedSurface SurfaceEncoder::encode(const TransformedSurface& surface,
 
 float smallestStep(const TransformedSurface& surface)
 {
-    // Steps shrink by at most SurfaceParameters::areaLimit, below 17.
+    // Steps shrink by at most SurfaceParameters::areaLimit, below 5.
     double detail = 0;
     for (const TransformedSurface::Level& level : surface.levels)
         for (const double value : level.largest) detail = std::max(detail, value);
-    return smallestStep(32 * detail, surface.largest);
+    return smallestStep(8 * detail, surface.largest);
 }
 
 } // namespace gimg::codec

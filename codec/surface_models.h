@@ -12,7 +12,7 @@ constexpr unsigned kMagnitudeBits = 3; ///< before the escape
 
 struct SurfaceModels
 {
-    BitModel bandIsEmpty[kComponents][kLevels];
+    BitModel levelIsEmpty[kLevels];
     BitModel blockByLevel[kDirections][2][kLevels][7];
     BitModel blockByParents[kDirections][2][7][14];
     BitModel blockByRing[kDirections][2][10][14];
