@@ -80,7 +80,8 @@ struct SurfaceMemory
                    (Arena::sizeOf<double>(samplesOf(grid)) + Arena::sizeOf<std::int32_t>(codedSize(grid))) +
                kComponents * Arena::sizeOf<double>(coarseSamplesOf(grid)) +
                Arena::sizeOf<double>(2 * std::size_t{borderSize(grid)}) +
-               Arena::sizeOf<std::uint32_t>(borderSize(grid)) + Arena::sizeOf<SurfaceModels>(1);
+               Arena::sizeOf<std::uint32_t>(borderSize(grid)) +
+               Arena::sizeOf<std::uint8_t>(BlockMap::memory(grid)) + Arena::sizeOf<SurfaceModels>(1);
     }
 
     bool take(Arena& arena, std::uint32_t grid)
@@ -99,6 +100,9 @@ struct SurfaceMemory
         }
         need(work.border, 2 * std::size_t{borderSize(grid)});
         need(mates, borderSize(grid));
+        std::uint8_t* blocks = nullptr;
+        need(blocks, BlockMap::memory(grid));
+        work.blocks = BlockMap(blocks);
         need(models, 1);
         return all;
     }
@@ -110,8 +114,9 @@ struct SurfaceMemory
 
 struct PlainDetails
 {
-    void begin(const SurfaceLevel&) const {}
-    bool isEmpty(unsigned, unsigned) const { return false; }
+    void begin(const SurfaceLevel&, const double* const (&)[kComponents]) const {}
+    bool isEmpty() const { return false; }
+    bool isFilled(std::uint32_t, std::uint32_t, unsigned) const { return false; }
     std::int32_t operator()(RangeDecoder& decoder, const DetailContext& context, unsigned, std::size_t,
                             const Frame&) const
     {
@@ -235,7 +240,8 @@ SurfaceParameters surfaceParameters(const ImageHeader& header)
     parameters.step = static_cast<double>(header.step);
     parameters.rise = header.ratios & 0x0Fu;
     parameters.most = 2 * (header.ratios >> 4);
-    parameters.areaLimit = 1 + header.areaLimit / 16.0;
+    parameters.areaLimit = 1 + (header.limits & 0x0Fu) / 4.0;
+    parameters.flatness = powerOfQuarters(2 * (header.limits >> 4));
     return parameters;
 }
 
@@ -257,7 +263,7 @@ ReadStatus readImageHeader(format::ByteSpan content, ImageKind image, ImageHeade
     } else if (header->coding == GIM_CODING_SURFACE) {
         header->step = in.f32();
         header->ratios = in.u8();
-        header->areaLimit = in.u8();
+        header->limits = in.u8();
     } else if (header->coding == GIM_CODING_RAW12) {
         for (float& least : header->least) least = in.f32();
         header->step = in.f32();

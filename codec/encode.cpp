@@ -60,17 +60,18 @@ Bytes waveletContent(const TransformedImage& image, float step)
     return content;
 }
 
-// Tangential steps grow by half an octave a level, to eight times the normal ones; those of small and large
-// cells differ by at most 1.25. Found by trial on scanned and designed surfaces.
-constexpr std::uint8_t kRatios = 2 | 6 << 4;
-constexpr std::uint8_t kAreaLimit = 4;
+// Tangential steps grow by three quarters of an octave a level where the surface is flat enough, to eight
+// times the normal ones; those of small and large cells differ by at most 1.25. Found by trial on scanned and
+// designed surfaces.
+constexpr std::uint8_t kRatios = 3 | 6 << 4;
+constexpr std::uint8_t kLimits = 1 | 4 << 4;
 
 SurfaceParameters parametersOf(float step)
 {
     ImageHeader header;
     header.step = step;
     header.ratios = kRatios;
-    header.areaLimit = kAreaLimit;
+    header.limits = kLimits;
     return surfaceParameters(header);
 }
 
@@ -79,7 +80,7 @@ Bytes surfaceContent(const SurfaceEncoder& encoder, const TransformedSurface& su
     Bytes content = imageContent(surface.grid, GIM_CODING_SURFACE);
     format::appendF32(content, step);
     content.push_back(kRatios);
-    content.push_back(kAreaLimit);
+    content.push_back(kLimits);
     for (const std::uint8_t byte : encoder.encode(surface, parametersOf(step)).payload)
         content.push_back(byte);
     return content;
@@ -388,7 +389,8 @@ Outcome<EncodedFile> Encoder::encodeToBytes(std::size_t target, gim_coding codin
             return searchStep(
                 surface_, [&](float step) { return surfaceContent(*surfaceEncoder_, surface_, step); }, left);
         const TransformedImage image = codec::transform(xyz_, surface_.grid);
-        return searchStep(image, [&](float step) { return waveletContent(image, step); }, left);
+        return searchStep(
+            image, [&](float step) { return waveletContent(image, step); }, left);
     }();
     if (EncodeError* error = std::get_if<EncodeError>(&found)) return unreachable(*error, normalSize);
     Candidate& geometry = std::get<Candidate>(found);

@@ -25,7 +25,7 @@ struct ImageHeader
     float step = 0;                ///< wavelet: quantisation step; raw12: distance of neighbouring integers
     std::uint8_t shifts = 0;       ///< wavelet: see Dequantizer
     std::uint8_t ratios = 0;       ///< surface: see surfaceParameters()
-    std::uint8_t areaLimit = 0;    ///< surface: likewise
+    std::uint8_t limits = 0;       ///< surface: likewise
     float least[kComponents] = {}; ///< raw12: what integer 0 stands for
     format::ByteSpan samples;      ///< the coded samples
     std::size_t fixedBytes = 0;
@@ -38,7 +38,8 @@ ReadStatus readImageHeader(format::ByteSpan content, ImageKind kind, ImageHeader
 constexpr std::uint64_t raw12Size(std::uint64_t grid) { return (grid * grid * kComponents * 12 + 7) / 8; }
 
 /// What the fixed fields of a surface's chunk mean. The low nibble of `ratios` is SurfaceParameters::rise,
-/// the high one half of SurfaceParameters::most; `areaLimit` is in sixteenths above 1.
+/// the high one half of SurfaceParameters::most; the low nibble of `limits` is the area limit in quarters
+/// above 1, the high one the flatness in half octaves, 0 for 1.
 SurfaceParameters surfaceParameters(const ImageHeader& header);
 
 /// Bytes that decodeImage() takes from its arena.

@@ -15,8 +15,8 @@ namespace {
 
 /// What one bit is allowed to mend, in squared steps.
 constexpr double kWorthOfBit = 0.11;
-/// A band none of whose details reaches this part of a step is not worth coding.
-constexpr double kEmptyBelow = 0.6;
+/// What a detail that is not 0 takes, in bits: that of one step, and what an octave adds.
+constexpr double kBitsOfDetail = 6, kBitsOfOctave = 2;
 
 struct EncoderMemory
 {
@@ -32,6 +32,8 @@ struct EncoderMemory
             work.parents[c] = integers(codedSize(grid));
         }
         work.border = numbers(2 * std::size_t{borderSize(grid)});
+        blocks_.resize(BlockMap::memory(grid));
+        work.blocks = BlockMap(blocks_.data());
     }
 
     SurfaceWork work;
@@ -42,6 +44,7 @@ private:
 
     std::vector<std::vector<double>> numbers_;
     std::vector<std::vector<std::int32_t>> integers_;
+    std::vector<std::uint8_t> blocks_;
 };
 
 /// Chooses and codes one detail after the other.
@@ -53,24 +56,45 @@ public:
     {
     }
 
-    void begin(const SurfaceLevel& level)
+    void begin(const SurfaceLevel& level, const double* const (&prediction)[kComponents])
     {
         exact_ = &surface_.levels[level.index];
-        tangentialRatio_ = level.tangentialRatio;
+        const std::uint32_t n = level.size;
+        side_ = BlockMap::side(n);
+        worth_.assign(std::size_t{2} * side_ * side_, 0);
+        for (unsigned orientation = 0; orientation < 3; ++orientation)
+            for (std::uint32_t j = firstRow(orientation); j < n; j += 2)
+                for (std::uint32_t i = firstColumn(orientation); i < n; i += 2) {
+                    if (!sharedDetail(level, orientation, i, j).isFirst) continue;
+                    const Frame frame = frameAt(prediction, level, parameters_, orientation, i, j);
+                    double* worths =
+                        &worth_[2 * (std::min(j / BlockMap::kBlock, side_ - 1) * std::size_t{side_} +
+                                     std::min(i / BlockMap::kBlock, side_ - 1))];
+                    for (unsigned c = 0; c < kComponents; ++c) {
+                        const double size = std::abs(exactIn(frame, c, j * std::size_t{n} + i));
+                        const double nearest = std::floor(size + 0.5);
+                        if (nearest == 0) continue;
+                        const double mended = size * size - (size - nearest) * (size - nearest);
+                        worths[c == 0 ? 0 : 1] += std::max(
+                            0.0, mended - kWorthOfBit * (kBitsOfDetail + kBitsOfOctave * std::log2(nearest)));
+                    }
+                }
     }
 
-    bool isEmpty(unsigned orientation, unsigned component) const
+    bool isFilled(std::uint32_t bi, std::uint32_t bj, unsigned direction) const
     {
-        const double step =
-            parameters_.step * (component == 0 ? 1 : tangentialRatio_) / parameters_.areaLimit;
-        return exact_->largest[orientation] < kEmptyBelow * step;
+        return worth_[2 * (bj * std::size_t{side_} + bi) + direction] > 0;
+    }
+
+    bool isEmpty() const
+    {
+        return std::none_of(worth_.begin(), worth_.end(), [](double worth) { return worth > 0; });
     }
 
     std::int32_t operator()(RangeEncoder& coder, const DetailContext& context, unsigned component,
                             std::size_t index, const Frame& frame) const
     {
-        const Vector detail = {exact_->detail[0][index], exact_->detail[1][index], exact_->detail[2][index]};
-        const double exact = dot(frame.axis[component], detail) / frame.step[component];
+        const double exact = exactIn(frame, component, index);
         const double size = std::min(std::abs(exact), static_cast<double>(kMaxDetail - 1));
         const std::int32_t sign = exact < 0 ? -1 : 1;
         const std::int32_t magnitude = thriftyMagnitude(size, kWorthOfBit, [&](std::int32_t candidate) {
@@ -82,10 +106,18 @@ public:
     }
 
 private:
+    // A detail's component, in steps.
+    double exactIn(const Frame& frame, unsigned component, std::size_t index) const
+    {
+        const Vector detail = {exact_->detail[0][index], exact_->detail[1][index], exact_->detail[2][index]};
+        return dot(frame.axis[component], detail) / frame.step[component];
+    }
+
     const TransformedSurface& surface_;
     const SurfaceParameters& parameters_;
+    std::vector<double> worth_; // of the level's blocks
+    std::uint32_t side_ = 0;
     const TransformedSurface::Level* exact_ = nullptr;
-    double tangentialRatio_ = 1;
 };
 
 } // namespace
@@ -181,11 +213,11 @@ CodedSurface SurfaceEncoder::encode(const TransformedSurface& surface,
 
 float smallestStep(const TransformedSurface& surface)
 {
-    // Steps shrink by at most SurfaceParameters::areaLimit, below 17.
+    // Steps shrink by at most SurfaceParameters::areaLimit, below 5.
     double detail = 0;
     for (const TransformedSurface::Level& level : surface.levels)
         for (const double value : level.largest) detail = std::max(detail, value);
-    return smallestStep(32 * detail, surface.largest);
+    return smallestStep(8 * detail, surface.largest);
 }
 
 } // namespace gimg::codec

@@ -12,17 +12,23 @@ struct SurfaceParameters
 {
     double step = 1;         ///< of details along the normal, where cells have their mean area
     double areaLimit = 1.75; ///< steps differ from that by at most this factor, both ways
-    unsigned rise = 2;       ///< quarter octaves a level by which tangential steps grow over normal ones
+    double flatness = 4;     ///< tangential steps are at most this many times (cell / bend)^(1/2) normal ones
+    unsigned rise = 3;       ///< quarter octaves a level by which tangential steps may grow over normal ones
     unsigned most = 12;      ///< quarter octaves at which that ends
 };
 
-/// The ratio of tangential steps to normal ones at a level of details, 0 for the coarsest.
-inline double tangentialRatio(const SurfaceParameters& parameters, unsigned level)
+/// 2^(quarters / 4).
+inline double powerOfQuarters(unsigned quarters)
 {
     constexpr double kQuarters[4] = {1.0, 1.189207115002721, 1.4142135623730951, 1.6817928305074292};
+    return kQuarters[quarters % 4] * static_cast<double>(1u << quarters / 4);
+}
+
+/// The largest ratio of tangential steps to normal ones at a level of details, 0 for the coarsest.
+inline double largestTangentialRatio(const SurfaceParameters& parameters, unsigned level)
+{
     const unsigned grown = level * parameters.rise;
-    const unsigned exponent = grown < parameters.most ? grown : parameters.most;
-    return kQuarters[exponent % 4] * static_cast<double>(1u << exponent / 4);
+    return powerOfQuarters(grown < parameters.most ? grown : parameters.most);
 }
 
 struct Vector
@@ -41,10 +47,10 @@ inline Vector cross(Vector a, Vector b)
 /// A level while its details are coded.
 struct SurfaceLevel
 {
-    std::uint32_t size = 0; ///< samples a side, with the details
-    unsigned index = 0;     ///< 0 for the coarsest
-    double meanArea = 0;    ///< of a cell of the prediction
-    double tangentialRatio = 1;
+    std::uint32_t size = 0;              ///< samples a side, with the details
+    unsigned index = 0;                  ///< 0 for the coarsest
+    double meanArea = 0;                 ///< of a cell of the prediction
+    double largestRatio = 1;             ///< of tangential steps to normal ones
     const GluedBorder* border = nullptr; ///< nullptr: this level's details are not glued
 };
 
@@ -142,14 +148,28 @@ inline Frame frameAt(const double* const (&planes)[kComponents], const SurfaceLe
         factor = std::sqrt(squared);
     }
     frame.step[0] = parameters.step * factor;
-    frame.step[1] = frame.step[2] = frame.step[0] * level.tangentialRatio;
 
-    const std::uint32_t n = level.size;
+    const std::uint32_t n = level.size, last = n - 1;
     const std::size_t at = j * std::size_t{n} + i;
     const auto pick = [&](std::size_t k) { return sampleOf(planes, k); };
-    const Vector second = orientation == Horizontal ? pick(at + 1) + pick(at - 1) - 2.0 * pick(at)
+    const auto bendAlong = [&](std::size_t apart) {
+        return pick(at + apart) + pick(at - apart) - 2.0 * pick(at);
+    };
+    const Vector none = {0, 0, 0};
+    const Vector alongI = i > 0 && i < last ? bendAlong(1) : none,
+                 alongJ = j > 0 && j < last ? bendAlong(n) : none;
+    // Where the surface is flat, a sample may err along it without being seen.
+    const double bent = dot(alongI, alongI) + dot(alongJ, alongJ);
+    const double flat = parameters.flatness * parameters.flatness * area;
+    const double most = level.largestRatio * level.largestRatio;
+    frame.step[1] = frame.step[0] * (flat >= most * bent ? level.largestRatio
+                                     : flat > bent       ? std::sqrt(flat / bent)
+                                                         : 1.0);
+    frame.step[2] = frame.step[1];
+
+    const Vector second = orientation == Horizontal ? alongI
                           : orientation == Vertical
-                              ? pick(at + n) + pick(at - n) - 2.0 * pick(at)
+                              ? alongJ
                               : pick(at + n + 1) + pick(at - n - 1) - (pick(at + n - 1) + pick(at - n + 1));
     frame.bend = dot(second, frame.axis[0]) / frame.step[0];
     return frame;

@@ -6,22 +6,21 @@ namespace gimg::codec {
 
 /// Details along the normal, and along the two tangents, are coded with models of their own.
 constexpr unsigned kDirections = 2;
-constexpr unsigned kMagnitudeModels = 9;
+constexpr unsigned kMagnitudeModels = 4;
 constexpr unsigned kSignModels = 4;
 constexpr unsigned kMagnitudeBits = 3; ///< before the escape
 
 struct SurfaceModels
 {
-    BitModel bandIsEmpty[kComponents][kLevels];
-    BitModel nearHere[18][8][kDirections][kMagnitudeBits];
-    BitModel nearParent[18][10][2][kDirections][kMagnitudeBits];
+    BitModel levelIsEmpty[kLevels];
+    BitModel blockByLevel[kDirections][2][kLevels][7];
+    BitModel blockByParents[kDirections][2][7][14];
+    BitModel blockByRing[kDirections][2][10][14];
+    MixWeights<3> blockWeights[kDirections][2];
     BitModel eachNear[8][8][8][kDirections][kMagnitudeBits];
     BitModel everything[24][kComponents][kMagnitudeBits];
-    BitModel place[kLevels][3][10][kDirections][kMagnitudeBits];
     BitModel bent[14][8][kDirections][kMagnitudeBits];
     BitModel family[10][12][3][kDirections][kMagnitudeBits];
-    BitModel nearSiblings[12][10][kDirections][kMagnitudeBits];
-    BitModel wide[14][8][kDirections][kMagnitudeBits];
     MixWeights<kMagnitudeModels> byActivity[24][kDirections][kMagnitudeBits];
     MixWeights<kMagnitudeModels> byPlace[kLevels][3][kDirections][kMagnitudeBits];
     ExpGolombModels<kDetailPrefixes> larger[18];
@@ -96,23 +95,15 @@ inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbou
     const double size = bend < 0 ? -bend : bend;
     const unsigned bent = activityClass(size < 16384.0 ? static_cast<std::uint64_t>(size * 4) : 65536, 13);
 
-    const unsigned a = activityClass(near, 17), b = activityClass(others, 7);
+    const unsigned a = activityClass(near, 17);
     const unsigned p = activityClass(2 * parent + parentNear, 9), s = activityClass(siblings, 11);
     const unsigned w = activityClass(west, 7), n = activityClass(north, 7), d = activityClass(diagonals, 7);
     const unsigned all = activityClass(2 * near + 3 * others + 2 * parent + parentNear + 2 * siblings, 23);
-    const std::uint64_t ring = farther + sizeAt(q, -2 * row - 4) + sizeAt(q, -2 * row + 4) +
-                               sizeAt(q, -4 * row - 2) + sizeAt(q, -4 * row + 2) + sizeAt(q, -4 * row - 4) +
-                               sizeAt(q, -4 * row + 4);
     DetailContext c;
-    c.magnitude[0] = models.nearHere[a][b][direction];
-    c.magnitude[1] = models.nearParent[a][p][orientation == Diagonal][direction];
-    c.magnitude[2] = models.eachNear[w][n][d][direction];
-    c.magnitude[3] = models.everything[all][component];
-    c.magnitude[4] = models.place[level][orientation][a < 9 ? a : 9][direction];
-    c.magnitude[5] = models.bent[bent][a < 7 ? a : 7][direction];
-    c.magnitude[6] = models.family[p][s][orientation][direction];
-    c.magnitude[7] = models.nearSiblings[s][a < 9 ? a : 9][direction];
-    c.magnitude[8] = models.wide[activityClass(ring, 13)][activityClass(parentNear, 7)][direction];
+    c.magnitude[0] = models.eachNear[w][n][d][direction];
+    c.magnitude[1] = models.everything[all][component];
+    c.magnitude[2] = models.bent[bent][a < 7 ? a : 7][direction];
+    c.magnitude[3] = models.family[p][s][orientation][direction];
     c.byActivity = models.byActivity[all][direction];
     c.byPlace = models.byPlace[level][orientation][direction];
     c.larger = &models.larger[a];

@@ -523,16 +523,16 @@ def transform_along_seam(image, n, border):
 
 class SurfaceModels:
     def __init__(self):
-        self.empty, self.magnitude, self.sign = Models(), Models(), Models()
+        self.empty, self.block, self.magnitude, self.sign = Models(), Models(), Models(), Models()
         self.larger = Models(lambda: ExpGolomb(30))
-        self.weights = Models(lambda: [65536 * 13 // 10 // 9] * 9)
+        self.weights = Models(lambda: [65536 * 13 // 10 // 4] * 4)
+        self.block_weights = Models(lambda: [65536 * 13 // 10 // 3] * 3)
         self.sign_weights = Models(lambda: [65536 * 13 // 10 // 4] * 4)
 
 
 def read_surface(n_file, content, seam):
-    step, ratios, limit_byte = struct.unpack_from("<fBB", content)
+    step, ratios, limits = struct.unpack_from("<fBB", content)
     demand(2.0 ** -100 <= step <= 2.0 ** 100)
-    limit = 1 + limit_byte / 16
     d = Decoder(content[6:])
     border, models = Border(seam, n_file), SurfaceModels()
     surface = [[[q * step for q in image[3 * j:3 * j + 3]] for j in range(3)] for image in read_coarse(d)]
@@ -551,7 +551,7 @@ def read_surface(n_file, content, seam):
                     fine[2 * j][2 * i] = image[j][i] * (1.0 / A)
             transform_along_seam(fine, n, glued)
             prediction.append(fine)
-        q, details, any_coded = read_details(d, models, prediction, n, v, step, ratios, limit, glued, before)
+        q, details, any_coded = read_details(d, models, prediction, n, v, step, ratios, limits, glued, before)
         if any_coded:
             for c in range(3):
                 fine = [[0.0] * n for _ in range(n)]
@@ -569,7 +569,11 @@ def read_surface(n_file, content, seam):
     return [f32(surface[c][j][i]) for j in range(n_file) for i in range(n_file) for c in range(3)]
 
 
-def read_details(d, models, prediction, n, v, step, ratios, limit, glued, before):
+def root(k):
+    return [1.0, 1.189207115002721, 1.4142135623730951, 1.6817928305074292][k % 4] * float(1 << k // 4)
+
+
+def read_details(d, models, prediction, n, v, step, ratios, limits, glued, before):
     last = n - 1
     mate = glued.mates(n) if glued else {}
 
@@ -582,8 +586,8 @@ def read_details(d, models, prediction, n, v, step, ratios, limit, glued, before
             c = cross(sub(P(i + 1, j + 1), P(i, j)), sub(P(i, j + 1), P(i + 1, j)))
             mean += math.sqrt(dot(c, c))
     mean = mean * 0.5 / (float(last) * float(last))
-    k = min(v * (ratios & 15), 2 * (ratios >> 4))
-    ratio = [1.0, 1.189207115002721, 1.4142135623730951, 1.6817928305074292][k % 4] * float(1 << k // 4)
+    limit, flatness = 1 + (limits & 15) / 4, root(2 * (limits >> 4))
+    most = root(min(v * (ratios & 15), 2 * (ratios >> 4)))
 
     def derivative(i, j, x, y):
         i0, j0, i1, j1 = i - x, j - y, i + x, j + y
@@ -607,27 +611,34 @@ def read_details(d, models, prediction, n, v, step, ratios, limit, glued, before
             axes = (normal, along, cross(normal, along))
         else:
             axes = ((0.0, 0.0, 1.0), (1.0, 0.0, 0.0), (0.0, 1.0, 0.0))
-        f = 1.0
+        f, area = 1.0, math.sqrt(G) * 0.25
         if mean > 0:
-            r, squared = math.sqrt(G) * 0.25 / mean, limit * limit
+            r, squared = area / mean, limit * limit
             f = math.sqrt(squared if r * limit * limit < 1 else 1.0 / squared if r > squared else 1.0 / r)
         w = step * f
-        if band == 0:
-            second = sub(add(P(i + 1, j), P(i - 1, j)), times(2.0, P(i, j)))
-        elif band == 1:
-            second = sub(add(P(i, j + 1), P(i, j - 1)), times(2.0, P(i, j)))
-        else:
+        si = sj = (0.0, 0.0, 0.0)
+        if 0 < i < last:
+            si = sub(add(P(i + 1, j), P(i - 1, j)), times(2.0, P(i, j)))
+        if 0 < j < last:
+            sj = sub(add(P(i, j + 1), P(i, j - 1)), times(2.0, P(i, j)))
+        bent, flat = dot(si, si) + dot(sj, sj), flatness * flatness * area
+        ratio = most if flat >= most * most * bent else math.sqrt(flat / bent) if flat > bent else 1.0
+        second = si if band == 0 else sj
+        if band == 2:
             second = sub(add(P(i + 1, j + 1), P(i - 1, j - 1)), add(P(i - 1, j + 1), P(i + 1, j - 1)))
         return axes, (w, w * ratio, w * ratio), dot(second, axes[0]) / w
 
-    q, details, any_coded = {}, {}, False
+    q, details = {}, {}
+    if d.bit(models.empty[v]):
+        return q, details, False
+    B = max(1, last // 8)
+    filled = read_blocks(d, models, v, B, before)
     for band, (i0, j0) in enumerate([(1, 0), (0, 1), (1, 1)]):
-        empty = [d.bit(models.empty[c, v]) for c in range(3)]
-        if all(empty):
-            continue
-        any_coded = True
         for j in range(j0, n, 2):
             for i in range(i0, n, 2):
+                has = [filled[e, min(i // 8, B - 1), min(j // 8, B - 1)] for e in (0, 1, 1)]
+                if not any(has):
+                    continue
                 other = mate.get((i, j))
                 if other:
                     other_band = 1 if other[0] % 2 == 0 else 0
@@ -636,7 +647,7 @@ def read_details(d, models, prediction, n, v, step, ratios, limit, glued, before
                 axes, steps, bend = frame(i, j, band)
                 here, detail = [0, 0, 0], (0.0, 0.0, 0.0)
                 for c in range(3):
-                    if empty[c]:
+                    if not has[c]:
                         continue
                     here[c] = read_detail(d, models, q, before, i, j, c, here, band, v, bend)
                     if here[c]:
@@ -648,7 +659,26 @@ def read_details(d, models, prediction, n, v, step, ratios, limit, glued, before
                         details[other] = detail
                         for c in range(3):
                             q[(c,) + other] = here[c]
-    return q, details, any_coded
+    return q, details, True
+
+
+def read_blocks(d, models, v, B, before):
+    filled = {}
+    for bj in range(B):
+        for bi in range(B):
+            for e in range(2):
+                def sum_of(least, most):
+                    return sum(abs(before.get((c, 4 * bi + x, 4 * bj + y), 0)) for c in ((0,), (1, 2))[e]
+                               for y in range(least, most + 1) for x in range(least, most + 1))
+
+                g = filled[0, bi, bj] if e else 0
+                o = 2 * (filled.get((e, bi - 1, bj), 0) + filled.get((e, bi, bj - 1), 0))
+                o += filled.get((e, bi - 1, bj - 1), 0) + filled.get((e, bi + 1, bj - 1), 0)
+                below = sum_of(0, 4)
+                x, y = cls(below, 13), cls(sum_of(-2, 6) - below, 13)
+                keys = [(0, e, g, v, o), (1, e, g, o, x), (2, e, g, min(x, 9), y)]
+                filled[e, bi, bj] = d.mixed([models.block[key] for key in keys], models.block_weights[e, g])
+    return filled
 
 
 def read_detail(d, models, coded, before, i, j, component, here, band, v, bend):
@@ -667,19 +697,16 @@ def read_detail(d, models, coded, before, i, j, component, here, band, v, bend):
     siblings = [(), ((-1, -1), (1, -1), (-1, 1), (1, 1)), ((0, -1), (0, 1), (-1, 0), (1, 0))][band]
     sib = sum(abs(q(*at)) for at in siblings)
     F = [0, q(-1, -1) - q(1, -1) - q(-1, 1) + q(1, 1), sum(q(*at) for at in siblings)][band]
-    up_near = abs(p(-2, 0)) + abs(p(2, 0)) + abs(p(0, -2)) + abs(p(0, 2))
-    up = 2 * abs(p(0, 0)) + up_near
+    up = 2 * abs(p(0, 0)) + abs(p(-2, 0)) + abs(p(2, 0)) + abs(p(0, -2)) + abs(p(0, 2))
     others = sum(2 * abs(here[c]) for c in range(component))
     others += sum((abs(q(-2, 0, c)) + abs(q(0, -2, c)) + 1) // 2 for c in range(component + 1, 3))
-    ring = far + sum(abs(q(*at)) for at in ((-4, -2), (4, -2), (-2, -4), (2, -4), (-4, -4), (4, -4)))
-    a, b, u, s = cls(near, 17), cls(others, 7), cls(up, 9), cls(sib, 11)
+    a, u, s = cls(near, 17), cls(up, 9), cls(sib, 11)
     t = cls(2 * near + 3 * others + up + 2 * sib, 23)
     c = cls(int(4 * abs(bend)), 13) if abs(bend) < 16384 else 13
     k = 0
     while k < 3:
-        keys = [(0, a, b, e, k), (1, a, u, band == 2, e, k), (2, cls(W, 7), cls(N, 7), cls(dia, 7), e, k),
-                (3, t, component, k), (4, v, band, min(a, 9), e, k), (5, c, min(a, 7), e, k), (6, u, s, band, e, k),
-                (7, s, min(a, 9), e, k), (8, cls(ring, 13), cls(up_near, 7), e, k)]
+        keys = [(0, cls(W, 7), cls(N, 7), cls(dia, 7), e, k), (1, t, component, k), (2, c, min(a, 7), e, k),
+                (3, u, s, band, e, k)]
         if not d.mixed_twice([models.magnitude[key] for key in keys], models.weights[0, t, e, k],
                              models.weights[1, v, band, e, k]):
             break

@@ -1,0 +1,60 @@
+#pragma once
+
+#include "mixer.h"
+#include "subbands.h"
+
+#include <cstring>
+
+namespace gimg::codec {
+
+/// A level of n x n samples in blocks of 8 x 8, those at the far sides one sample larger: which of them hold
+/// details that are not 0, along the normal and along the tangents. The others cost one flag, and no time.
+class BlockMap
+{
+public:
+    static constexpr std::uint32_t kBlock = 8;
+    static constexpr std::uint32_t side(std::uint32_t n) { return n <= kBlock ? 1 : (n - 1) / kBlock; }
+    /// Bytes for levels of up to n x n samples.
+    static constexpr std::size_t memory(std::uint32_t n)
+    {
+        return (std::size_t{side(n)} + 2) * (std::size_t{side(n)} + 1);
+    }
+
+    explicit BlockMap(std::uint8_t* flags = nullptr) : flags_(flags) {}
+
+    void begin(std::uint32_t n)
+    {
+        side_ = side(n);
+        std::memset(flags_, 0, memory(n));
+    }
+    std::uint32_t side() const { return side_; }
+    /// @param direction  0: the normal, 1: the tangents
+    bool isFilled(std::uint32_t bi, std::uint32_t bj, unsigned direction) const
+    {
+        return (flags_[at(bi, bj)] >> direction & 1u) != 0;
+    }
+    void fill(std::uint32_t bi, std::uint32_t bj, unsigned direction)
+    {
+        flags_[at(bi, bj)] |= static_cast<std::uint8_t>(1u << direction);
+    }
+
+    /// 0 to 6: how much is filled beside and above.
+    unsigned around(std::uint32_t bi, std::uint32_t bj, unsigned direction) const
+    {
+        const std::uint8_t* here = flags_ + at(bi, bj);
+        const std::uint8_t* above = here - (side_ + 2);
+        const auto flag = [direction](std::uint8_t flags) { return flags >> direction & 1u; };
+        return 2u * (flag(here[-1]) + flag(above[0])) + flag(above[-1]) + flag(above[1]);
+    }
+
+private:
+    std::size_t at(std::uint32_t bi, std::uint32_t bj) const
+    {
+        return (std::size_t{bj} + 1) * (std::size_t{side_} + 2) + bi + 1;
+    }
+
+    std::uint8_t* flags_;
+    std::uint32_t side_ = 0;
+};
+
+} // namespace gimg::codec
