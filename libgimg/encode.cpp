@@ -268,7 +268,8 @@ Result<CodedFile> MeshEncoder::Prepared::codeOnceSlid(const codec::Encoder& stil
     Result<CodedFile> unslid =
         codeFor(goal, exact ? Precision::File : Precision::Step, still, measure, progress);
     if (!unslid) return unslid;
-    if (const Status moved = slide.move(unslid->step, effort.slides); !moved) return moved.error();
+    if (const Status moved = slide.move(stepToMeet(goal, *unslid), effort.slides); !moved)
+        return moved.error();
     Result<std::optional<CodedFile>> slid = codeSlid(slide, goal);
     if (!slid) return slid.error();
     if (!exact) {

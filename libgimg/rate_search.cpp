@@ -158,6 +158,13 @@ double askedQuality(const EncodeGoal& goal)
     return goal.target == EncodeTarget::MaxError ? -20 * std::log10(goal.maxError) : goal.psnr;
 }
 
+float stepToMeet(const EncodeGoal& goal, const CodedFile& file)
+{
+    if (goal.target == EncodeTarget::Bytes) return file.step;
+    const double excess = std::clamp(quality(file, goal.target) - askedQuality(goal), 0.0, kLooseWindow);
+    return static_cast<float>(file.step * std::exp2(excess / kSlope));
+}
+
 std::string describeQuality(double quality, EncodeTarget target)
 {
     char text[48];

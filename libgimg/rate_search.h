@@ -16,6 +16,8 @@ enum class Precision
 double quality(const CodedFile& file, EncodeTarget target);
 /// What the goal asks for, in the same unit. Psnr and MaxError only.
 double askedQuality(const EncodeGoal& goal);
+/// The step of a file that just meets the goal, guessed from one that is better.
+float stepToMeet(const EncodeGoal& goal, const CodedFile& file);
 /// "70.00 dB", "a largest error of 0.001"
 std::string describeQuality(double quality, EncodeTarget target);
 
