@@ -8,6 +8,7 @@
 #include <png.h>
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <csetjmp>
@@ -112,18 +113,19 @@ Status writeScaledPng(const FloatImage& image, const std::string& path, int bits
     });
 }
 
-constexpr const char* kChannels[] = {"R", "G", "B"};
+using ChannelNames = std::array<const char*, 3>;
+constexpr ChannelNames kChannels = {"R", "G", "B"}, kCoordinates = {"X", "Y", "Z"};
 
 /// OpenEXR addresses pixels by data window coordinates, so `left` and `top` are the corner of that window.
-Imf::FrameBuffer frameBuffer(float* samples, int width, int left, int top)
+Imf::FrameBuffer frameBuffer(const ChannelNames& names, float* samples, int width, int left, int top)
 {
     const size_t stride = 3 * sizeof(float);
     const size_t rowStride = stride * static_cast<size_t>(width);
     const auto offset = static_cast<ptrdiff_t>(stride) * left + static_cast<ptrdiff_t>(rowStride) * top;
     Imf::FrameBuffer buffer;
     for (size_t c = 0; c < 3; ++c)
-        buffer.insert(kChannels[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(samples + c) - offset,
-                                               stride, rowStride));
+        buffer.insert(names[c], Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(samples + c) - offset, stride,
+                                           rowStride));
     return buffer;
 }
 
@@ -201,7 +203,7 @@ try {
     for (const char* channel : kChannels) header.channels().insert(channel, Imf::Channel(Imf::FLOAT));
     Imf::OutputFile file(path.c_str(), header, 0); // no threads beside the caller's
     // The frame buffer of OpenEXR serves reading too and knows no const.
-    file.setFrameBuffer(frameBuffer(const_cast<float*>(image.samples.data()), image.width, 0, 0));
+    file.setFrameBuffer(frameBuffer(kChannels, const_cast<float*>(image.samples.data()), image.width, 0, 0));
     file.writePixels(image.height);
     return Done{};
 } catch (const std::exception& e) {
@@ -214,7 +216,8 @@ try {
     if (!std::filesystem::is_regular_file(path, ignored))
         return failure(ErrorKind::FileNotReadable, path, "no such file");
     Imf::InputFile file(path.c_str(), 0);
-    for (const char* name : kChannels) {
+    const ChannelNames& names = file.header().channels().findChannel("X") ? kCoordinates : kChannels;
+    for (const char* name : names) {
         const Imf::Channel* channel = file.header().channels().findChannel(name);
         if (!channel || channel->xSampling != 1 || channel->ySampling != 1)
             return failure(ErrorKind::FileCorrupt, path, std::string("no full channel ") + name);
@@ -229,7 +232,7 @@ try {
     image.width = static_cast<int>(width);
     image.height = static_cast<int>(height);
     image.samples.resize(3 * static_cast<size_t>(width) * static_cast<size_t>(height));
-    file.setFrameBuffer(frameBuffer(image.samples.data(), image.width, window.min.x, window.min.y));
+    file.setFrameBuffer(frameBuffer(names, image.samples.data(), image.width, window.min.x, window.min.y));
     file.readPixels(window.min.y, window.max.y);
     return image;
 } catch (const std::exception& e) {
@@ -274,6 +277,29 @@ Result<FloatImage> readF32(const std::string& path)
                 return failure(ErrorKind::NotFinite, path, "sample " + std::to_string(i) + " is not finite");
             image.samples[3 * i + c] = value;
         }
+    return image;
+}
+
+Result<FloatImage> readGeometryImage(const std::string& path)
+{
+    const std::string extension = std::filesystem::path(path).extension().string();
+    if (extension != ".f32" && extension != ".exr")
+        return failure(ErrorKind::FormatUnknown, path, "a geometry image is an .exr or .f32 file");
+    Result<FloatImage> image = extension == ".f32" ? readF32(path) : readExr(path);
+    if (!image) return image;
+    const int n = image->width;
+    if (n != image->height || n < 3 || n > 4097 || ((n - 1) & (n - 2)) != 0)
+        return failure(ErrorKind::FileCorrupt, path,
+                       "an image of " + std::to_string(n) + " x " + std::to_string(image->height) +
+                           " samples; a geometry image has 2^j + 1 a side, 3 to 4097");
+    const auto bad = std::find_if(image->samples.begin(), image->samples.end(),
+                                  [](float value) { return !std::isfinite(value); });
+    if (bad != image->samples.end()) {
+        const auto sample = (bad - image->samples.begin()) / 3;
+        return failure(ErrorKind::NotFinite, path,
+                       "sample " + std::to_string(sample % n) + ", " + std::to_string(sample / n) +
+                           " is not finite");
+    }
     return image;
 }
 

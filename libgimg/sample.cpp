@@ -144,17 +144,17 @@ Result<FloatImage> sampleNormals(const SquareDisk& square, const Parameterizatio
     return toFloat(*image);
 }
 
-double seamLength(const SquareDisk& square, const FloatImage& geometry)
+double seamLength(const GridSeam& seam, const FloatImage& geometry)
 {
     const std::uint32_t n = static_cast<std::uint32_t>(geometry.width), perimeter = 4 * (n - 1);
-    const std::uint32_t ratio = (n - 1) / static_cast<std::uint32_t>(square.lowest - 1);
+    const std::uint32_t ratio = (n - 1) / static_cast<std::uint32_t>(seam.lowest - 1);
     const auto at = [&](std::uint32_t position) {
         const float* p = &geometry.samples[3 * size_t{codec::borderSample(n, position % perimeter)}];
         return Vec3(p[0], p[1], p[2]);
     };
     double length = 0;
-    std::uint32_t begin = static_cast<std::uint32_t>(square.start) * ratio;
-    for (const gim_side& side : square.seam()) {
+    std::uint32_t begin = static_cast<std::uint32_t>(seam.start) * ratio;
+    for (const gim_side& side : seam.sides) {
         for (std::uint32_t k = 0; k < side.length * ratio && side.kind != GIM_SIDE_MATE; ++k)
             length += (at(begin + k + 1) - at(begin + k)).norm();
         begin += side.length * ratio;

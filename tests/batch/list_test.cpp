@@ -74,6 +74,10 @@ TEST(List, ALinesOwnOptionsWin)
     EXPECT_THAT(
         fileOptions(*parseLine({"i.ply", "o.gim", "--max-genus", "auto", "--close-holes", "2e-1"}, defaults)),
         ElementsAre("--bytes", "5000", "--grid", "65", "--close-holes", "0.2", "--max-genus", "auto"));
+    EXPECT_THAT(fileOptions(*parseLine(
+                    {"--from-image", "--max-error", "2e-3", "--tolerance=.001", "--effort", "8", "i.f32", "o.gim"},
+                    defaults)),
+                ElementsAre("--max-error", "0.002", "--from-image", "--tolerance", "0.001", "--effort", "8"));
     EXPECT_THAT(fileOptions(*parseLine({"--raw", "float", "i.ply", "o.gim"}, defaults)),
                 ElementsAre("--raw", "float", "--grid", "65"));
 }
@@ -87,7 +91,7 @@ TEST(List, LinesThatAreNoCallAreRefused)
     const Arguments bytes = defaultsOf(5000);
     EXPECT_EQ(error({"i.ply", "o.gim"}, bytes), "");
     EXPECT_EQ(error({"i.ply"}, bytes), "OUTPUT is required");
-    EXPECT_EQ(error({"i.ply", "o.gim"}, {}), "one of --bytes, --psnr and --raw is required");
+    EXPECT_EQ(error({"i.ply", "o.gim"}, {}), "one of --bytes, --psnr, --max-error and --raw is required");
     EXPECT_NE(error({"i.ply", "o.gim", "third"}, bytes), "");
     EXPECT_NE(error({"--bytes", "1", "--psnr", "60", "i.ply", "o.gim"}, bytes), "");
     EXPECT_NE(error({"--bytes", "-1", "i.ply", "o.gim"}, bytes), "");

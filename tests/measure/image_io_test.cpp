@@ -138,6 +138,27 @@ TEST_F(ImageIo, ExrOfOtherProgramsHasWindowsAndHalfs)
             EXPECT_EQ(image->at(pixel % 2, pixel / 2, k), static_cast<float>(4 * pixel + k) / 4);
 }
 
+TEST_F(ImageIo, ExrOfCoordinatesIsNamedByThem)
+{
+    Imf::Header header(3, 3);
+    std::vector<float> samples(27);
+    for (size_t k = 0; k < samples.size(); ++k) samples[k] = static_cast<float>(k);
+    Imf::FrameBuffer buffer;
+    size_t c = 0;
+    for (const char* name : {"X", "Y", "Z"}) {
+        header.channels().insert(name, Imf::Channel(Imf::FLOAT));
+        buffer.insert(name, Imf::Slice(Imf::FLOAT, reinterpret_cast<char*>(samples.data() + c++), 12, 36));
+    }
+    {
+        Imf::OutputFile file(path("a.exr").c_str(), header);
+        file.setFrameBuffer(buffer);
+        file.writePixels(3);
+    }
+    const Result<FloatImage> image = readGeometryImage(path("a.exr"));
+    ASSERT_TRUE(image.ok()) << image.error().message;
+    EXPECT_EQ(image->samples, samples);
+}
+
 TEST_F(ImageIo, DamagedExrIsRefused)
 {
     const FloatImage image{16, 16, std::vector<float>(768, 0.3F)};

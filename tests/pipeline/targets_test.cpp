@@ -5,6 +5,7 @@
 
 #include <gmock/gmock.h>
 
+#include <array>
 #include <cmath>
 
 namespace gimg {
@@ -37,16 +38,71 @@ TEST(EncodeBytes, ATargetBelowTheSmallestFileSaysWhatCanBeHad)
     EXPECT_THAT(encoded.error().message, testing::ContainsRegex("[0-9]+ bytes"));
 }
 
-TEST(EncodePsnr, IsMetWithinHalfADecibel)
+TEST(EncodePsnr, IsMetWithinAFifthOfADecibel)
 {
     const Mesh mesh = shapes::torus(3, 1, 96, 48);
-    EncodeOptions options = forTarget(EncodeTarget::Psnr, 129);
+    EncodeOptions options = forTarget(EncodeTarget::Psnr, 65);
     for (double psnr : {45.0, 58.0}) {
         options.psnr = psnr;
+        options.effort = psnr < 50 ? 6 : 1;
         const EncodedMesh encoded = encode(mesh, options);
         EXPECT_GE(encoded.psnr, psnr);
-        EXPECT_LE(encoded.psnr, psnr + 0.5);
+        EXPECT_LE(encoded.psnr, psnr + 0.2);
         EXPECT_NEAR(encoded.psnr, psnrOf(mesh, decodedLevel(encoded, 0)), 1e-9);
+    }
+}
+
+TEST(EncodeMaxError, IsMetWithinTwoPercent)
+{
+    const Mesh mesh = shapes::torus(3, 1, 96, 48);
+    EncodeOptions options = forTarget(EncodeTarget::MaxError, 129);
+    options.effort = 3;
+    for (double error : {0.01, 0.002}) {
+        options.maxError = error;
+        const EncodedMesh encoded = encode(mesh, options);
+        EXPECT_LE(encoded.maxError, error);
+        EXPECT_GE(encoded.maxError, 0.98 * error);
+        EXPECT_TRUE(encoded.warnings.empty());
+        const Result<SurfaceDistance> distance = compareSurfaces(mesh, decodedLevel(encoded, 0));
+        ASSERT_TRUE(distance.ok());
+        EXPECT_NEAR(encoded.maxError, distance->hausdorff() / distance->diagonal, 1e-12);
+    }
+}
+
+TEST(EncodeMaxError, WhereTheStepDoesNotDecideSaysSo)
+{
+    const Mesh mesh = shapes::torus(3, 1, 48, 24);
+    EncodeOptions options = forTarget(EncodeTarget::MaxError, 33);
+    options.effort = 1;
+    options.maxError = 1e-6;
+    const Result<EncodedMesh> fine = encodeMesh(mesh, options);
+    ASSERT_FALSE(fine.ok());
+    EXPECT_EQ(fine.error().kind, ErrorKind::TargetUnreachable);
+    EXPECT_THAT(fine.error().message, testing::HasSubstr("larger --grid"));
+    options.maxError = 0.99; // more than any surface inside the bounding box
+    const EncodedMesh coarse = encode(mesh, options);
+    EXPECT_LT(coarse.maxError, 0.97);
+    EXPECT_THAT(coarse.warnings, testing::Contains(testing::HasSubstr("nearer to a largest error of 0.99")));
+    for (double bad : {0.0, -0.1, 1.0, std::nan("")}) {
+        options.maxError = bad;
+        EXPECT_EQ(encodeMesh(mesh, options).error().kind, ErrorKind::BadArgument);
+    }
+}
+
+TEST(EncodeEffort, BuysDecibels)
+{
+    const Mesh mesh = shapes::wavySphere(1, 0.3, 5, 24);
+    EncodeOptions options = forBytes(2000, 129);
+    double psnr[3];
+    for (int k = 0; k < 3; ++k) {
+        options.effort = std::array{1, 6, 8}[static_cast<size_t>(k)];
+        psnr[k] = encode(mesh, options).psnr;
+    }
+    EXPECT_GT(psnr[1], psnr[0] + 0.2);
+    EXPECT_GT(psnr[2], psnr[1] + 0.01);
+    for (int bad : {0, 10, -1}) {
+        options.effort = bad;
+        EXPECT_EQ(encodeMesh(mesh, options).error().kind, ErrorKind::BadArgument);
     }
 }
 
@@ -73,7 +129,10 @@ TEST(EncodeGrid, LeftOpenGrowsWithTheGoal)
     EXPECT_GT(large->psnr, encode(mesh, forBytes(12000, 129)).psnr + 0.5);
     const Result<EncodedMesh> coarse = encoder->encode({EncodeTarget::Psnr, 0, 50});
     const Result<EncodedMesh> fine = encoder->encode({EncodeTarget::Psnr, 0, 80});
-    ASSERT_TRUE(coarse.ok() && fine.ok());
+    const Result<EncodedMesh> near =
+        encoder->encode({EncodeTarget::MaxError, 0, 0, LossyCoding::Surface, 0.01});
+    ASSERT_TRUE(coarse.ok() && fine.ok() && near.ok());
+    EXPECT_EQ(near->grid, 129);
     EXPECT_EQ(coarse->grid, 129);
     EXPECT_GT(fine->grid, 129);
     EXPECT_GE(fine->psnr, 80);

@@ -80,9 +80,15 @@ void addOptions(CLI::App& app, Arguments& a)
             return good ? std::string() : text + " is not a positive number";
         },
         "");
-    app.add_option(
-        "--grid", a.grid,
-        "samples a side, 2^j + 1 (default: what suits --bytes or --psnr, 129 to 1025; 257 for --raw)");
+    const CLI::Validator fraction(
+        [](const std::string& text) {
+            double number = 0;
+            const bool good = CLI::detail::lexical_cast(text, number) && number > 0 && number < 1;
+            return good ? std::string() : text + " is not between 0 and 1";
+        },
+        "");
+    app.add_option("--grid", a.grid,
+                   "samples a side, 2^j + 1 (default: what suits the target, 129 to 1025; 257 for --raw)");
     app.add_option("--lowest", a.lowest,
                    "samples a side of the lowest level of detail, 2^l + 1 (default: 33, or as needed)");
     app.add_option("--layout", a.layout,
@@ -90,9 +96,16 @@ void addOptions(CLI::App& app, Arguments& a)
         ->check(CLI::IsMember({"auto", "cut", "octahedral"}));
     auto* target = app.add_option_group("target", "what the file is made for; exactly one");
     target->add_option("--bytes", a.bytes, "size of the whole file, never exceeded")->check(positive);
-    target->add_option("--psnr", a.psnr, "surface PSNR in dB, met within 0.5 dB above")->check(positive);
-    auto* raw = target->add_option("--raw", a.raw, "no compression loss but 12-bit integers, or none at all with float")
-        ->check(CLI::IsMember({"12", "float"}));
+    target->add_option("--psnr", a.psnr, "surface PSNR in dB, met within 0.2 dB above")->check(positive);
+    target
+        ->add_option(
+            "--max-error", a.maxError,
+            "largest distance between the surfaces, as a fraction of the diagonal; met within 2 % below")
+        ->check(fraction);
+    auto* raw =
+        target
+            ->add_option("--raw", a.raw, "no compression loss but 12-bit integers, or none at all with float")
+            ->check(CLI::IsMember({"12", "float"}));
     target->require_option(0, 1);
     app.add_option("--normals", a.normals, "add a normal image of this many samples a side, 2^k + 1");
     auto* noFit = app.add_flag(
@@ -101,14 +114,26 @@ void addOptions(CLI::App& app, Arguments& a)
     app.add_flag("--features", a.features,
                  "lay grid lines along the sharp edges of machine parts and the like")
         ->excludes(noFit);
+    app.add_option("--effort", a.effort, "time for quality: 1 (fast) to 9 (small files; minutes)")
+        ->check(CLI::Range(EncodeOptions::kLeastEffort, EncodeOptions::kMostEffort))
+        ->capture_default_str();
+    app.add_flag(
+        "--from-image", a.fromImage,
+        "INPUT is a geometry image, .exr or .f32: code it as it is, glued where its border samples coincide");
+    app.add_option(
+           "--tolerance", a.tolerance,
+           "with --from-image: how far apart samples may be to coincide, as a fraction of the diagonal "
+           "(default: 0.0001)")
+        ->check(fraction);
     app.add_option("--component", a.component, "of several components take the largest")
         ->check(CLI::IsMember({"largest"}));
     app.add_option("--weld", a.weld,
                    "merge vertices at equal positions: auto (where that harms nothing), always, never")
         ->check(CLI::IsMember({"auto", "always", "never"}));
-    app.add_option("--coding", a.coding,
-                   "surface (along normals and tangents, across the seam), or wavelet (x, y, z on their own, both "
-                   "sides of the seam)")
+    app.add_option(
+           "--coding", a.coding,
+           "surface (along normals and tangents, across the seam), or wavelet (x, y, z on their own, both "
+           "sides of the seam)")
         ->check(CLI::IsMember({"surface", "wavelet"}))
         ->excludes(raw);
     app.add_option("--density", a.density, "samples: closer where the surface bends (curvature), or even")
@@ -129,24 +154,49 @@ void addOptions(CLI::App& app, Arguments& a)
 
 void addFiles(CLI::App& app, Arguments& a)
 {
-    app.add_option("INPUT", a.input, "mesh to encode");
+    app.add_option("INPUT", a.input, "mesh to encode, or geometry image with --from-image");
     app.add_option("OUTPUT", a.output, "file to write, .gim");
 }
 
-bool hasTarget(const Arguments& a) { return a.bytes || a.psnr || !a.raw.empty(); }
+bool hasTarget(const Arguments& a) { return a.bytes || a.psnr || a.maxError || !a.raw.empty(); }
+
+namespace {
+
+// Options of the road from a mesh to an image.
+std::optional<std::string> clash(const Arguments& a)
+{
+    const Arguments defaults;
+    const std::pair<const char*, bool> given[] = {{"--grid", a.grid != defaults.grid},
+                                                  {"--layout", a.layout != defaults.layout},
+                                                  {"--density", a.density != defaults.density},
+                                                  {"--weld", a.weld != defaults.weld},
+                                                  {"--param", a.param != defaults.param},
+                                                  {"--component", !a.component.empty()},
+                                                  {"--no-fit", a.noFit},
+                                                  {"--features", a.features},
+                                                  {"--close-holes", a.closeHoles.has_value()},
+                                                  {"--max-genus", a.maxGenus || a.removeNoise}};
+    for (const auto& [name, isGiven] : given)
+        if (isGiven) return std::string(name) + " is for meshes: --from-image takes the image as it is";
+    return std::nullopt;
+}
+
+} // namespace
 
 std::optional<std::string> missing(const Arguments& a)
 {
     if (a.input.empty()) return "INPUT is required";
     if (a.output.empty()) return "OUTPUT is required";
-    if (!hasTarget(a)) return "one of --bytes, --psnr and --raw is required";
+    if (!hasTarget(a)) return "one of --bytes, --psnr, --max-error and --raw is required";
+    if (a.tolerance && !a.fromImage) return "--tolerance needs --from-image";
+    if (a.fromImage) return clash(a);
     return std::nullopt;
 }
 
 Result<Arguments> parseLine(const std::vector<std::string>& words, const Arguments& defaults)
 {
     Arguments a = defaults;
-    a.bytes.reset(), a.psnr.reset(), a.raw.clear();
+    a.bytes.reset(), a.psnr.reset(), a.maxError.reset(), a.raw.clear();
     CLI::App app("", "gimenc");
     app.set_help_flag(); // a line that asks for help is a mistake
     addOptions(app, a);
@@ -156,7 +206,10 @@ Result<Arguments> parseLine(const std::vector<std::string>& words, const Argumen
     } catch (const CLI::ParseError& error) {
         return Error{ErrorKind::BadArgument, error.what()};
     }
-    if (!hasTarget(a)) a.bytes = defaults.bytes, a.psnr = defaults.psnr, a.raw = defaults.raw;
+    if (!hasTarget(a)) {
+        a.bytes = defaults.bytes, a.psnr = defaults.psnr;
+        a.maxError = defaults.maxError, a.raw = defaults.raw;
+    }
     if (!a.json.empty()) return Error{ErrorKind::BadArgument, "--json: the report of a line is OUTPUT.json"};
     if (const auto what = missing(a)) return Error{ErrorKind::BadArgument, *what};
     return a;
@@ -171,7 +224,11 @@ std::vector<std::string> fileOptions(const Arguments& a)
     };
     if (a.bytes) add("--bytes", std::to_string(*a.bytes));
     if (a.psnr) add("--psnr", shortest(*a.psnr));
+    if (a.maxError) add("--max-error", shortest(*a.maxError));
     if (!a.raw.empty()) add("--raw", a.raw);
+    if (a.fromImage) words.push_back("--from-image");
+    if (a.tolerance) add("--tolerance", shortest(*a.tolerance));
+    if (a.effort != EncodeOptions().effort) add("--effort", std::to_string(a.effort));
     if (a.grid != 0) add("--grid", std::to_string(a.grid));
     if (a.lowest != 0) add("--lowest", std::to_string(a.lowest));
     if (a.layout != "auto") add("--layout", a.layout);
@@ -207,6 +264,7 @@ EncodeOptions encodeOptions(const Arguments& a)
     options.fit = !a.noFit;
     options.features = a.features;
     options.threads = a.threads;
+    options.effort = a.effort;
     options.coding = a.coding == "wavelet" ? LossyCoding::Wavelet : LossyCoding::Surface;
     options.density = a.density == "even" ? Density::Even : Density::Curvature;
     for (MapKind kind : kMapKinds)
@@ -217,6 +275,9 @@ EncodeOptions encodeOptions(const Arguments& a)
     } else if (a.psnr) {
         options.target = EncodeTarget::Psnr;
         options.psnr = *a.psnr;
+    } else if (a.maxError) {
+        options.target = EncodeTarget::MaxError;
+        options.maxError = *a.maxError;
     } else {
         options.target = a.raw == "12" ? EncodeTarget::Raw12 : EncodeTarget::RawFloat;
     }

@@ -28,14 +28,17 @@ struct Arguments
 {
     std::string input, output;
     int grid = 0, lowest = 0, normals = 0, threads = 0;
-    std::optional<size_t> bytes; ///< of bytes, psnr and raw exactly one is set
-    std::optional<double> psnr;
+    std::optional<size_t> bytes; ///< of bytes, psnr, maxError and raw exactly one is set
+    std::optional<double> psnr, maxError;
     std::string raw, component, json;
     std::string layout = "auto";
     std::string coding = "surface";
     std::string density = "curvature";
     std::string weld = "auto";
     std::string param = "stretch";
+    int effort = EncodeOptions().effort;
+    bool fromImage = false;
+    std::optional<double> tolerance;
     bool noFit = false;
     bool features = false;
     std::optional<int> maxGenus;

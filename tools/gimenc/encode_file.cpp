@@ -83,6 +83,16 @@ nlohmann::ordered_json features(const FeatureReport& found)
             {"max_after", found.maxAfter}};
 }
 
+nlohmann::ordered_json seam(const FoundSeam& found)
+{
+    return {{"sides", found.sides},
+            {"border_steps", found.steps},
+            {"glued_steps", found.glued},
+            {"widest_gap", found.widestGap},
+            {"objection",
+             found.objection.empty() ? nlohmann::ordered_json() : nlohmann::ordered_json(found.objection)}};
+}
+
 nlohmann::ordered_json report(const EncodedMesh& encoded, const SimplifiedSurface& simplified,
                               const Seconds& seconds)
 {
@@ -96,21 +106,27 @@ nlohmann::ordered_json report(const EncodedMesh& encoded, const SimplifiedSurfac
     json["boundaries"] = encoded.topology.boundaries;
     json["grid"] = encoded.grid;
     json["lowest"] = encoded.lowest;
-    json["layout"] = encoded.layout == SquareLayout::Octahedral ? "octahedral" : "cut";
+    json["layout"] = encoded.image                                ? "image"
+                     : encoded.layout == SquareLayout::Octahedral ? "octahedral"
+                                                                  : "cut";
     json["bytes"] = {{"total", encoded.file.size()},
                      {"container", info.container_bytes},
                      {"sideband", info.seam_bytes},
                      {"geometry", info.geometry_bytes},
                      {"normals", info.normal_bytes}};
     json["psnr"] = finite(encoded.psnr);
-    json["param"] = mapName(encoded.param);
+    json["max_error"] = encoded.maxError;
+    json["image"] = nullptr;
+    if (encoded.image) json["image"] = seam(*encoded.image);
+    json["param"] = encoded.image ? nlohmann::ordered_json() : mapName(encoded.param);
     json["fit"] = nullptr;
     if (encoded.fit)
         json["fit"] = {{"db_before", finite(encoded.fit->psnrBefore)},
                        {"db_after", finite(encoded.fit->psnrAfter)}};
     json["features"] = nullptr;
     if (encoded.features) json["features"] = features(*encoded.features);
-    json["stretch_efficiency"] = encoded.stretchEfficiency;
+    json["stretch_efficiency"] =
+        encoded.image ? nlohmann::ordered_json() : nlohmann::ordered_json(encoded.stretchEfficiency);
     json["cut"] = {{"nodes", encoded.cutNodes},
                    {"paths", encoded.cutPaths},
                    {"extrema", encoded.cutExtrema},
@@ -128,47 +144,77 @@ nlohmann::ordered_json report(const EncodedMesh& encoded, const SimplifiedSurfac
     return json;
 }
 
-Failure make(const Arguments& a, Made& made)
+class Maker
 {
-    const auto start = std::chrono::steady_clock::now();
-    StatusLine progress(!a.quiet);
-    const auto show = [&](const char* stage, double fraction) {
+public:
+    Maker(const Arguments& a, Made& made) : a_(a), made_(made), progress_(!a.quiet) {}
+
+    Failure make()
+    {
+        show("read", 0);
+        EncodeOptions options = encodeOptions(a_);
+        options.progress = [this](const char* stage, double fraction) { show(stage, fraction); };
+        Failure failure = a_.fromImage ? fromImage(options) : fromMesh(options);
+        if (failure.exit != cli::Done) return failure;
+        seconds_.total = secondsSince(start_);
+        made_.report = report(made_.encoded, simplified_, seconds_);
+        return {};
+    }
+
+private:
+    void show(const char* stage, double fraction) const
+    {
         char text[64];
         std::snprintf(text, sizeof text, "%-14s %3.0f %%", stage, 100 * fraction);
-        progress.show(text);
-    };
-    show("read", 0);
-    Result<MeshFile> read = readMesh(a.input, readOptions(a));
-    if (!read) {
-        const bool several = read.error().kind == ErrorKind::SeveralComponents;
-        return {cli::Refused,
-                read.error().message + (several ? "; --component largest takes the largest" : "")};
+        progress_.show(text);
     }
-    Seconds seconds;
-    seconds.read = secondsSince(start);
 
-    SimplifiedSurface simplified;
-    if (asksForSimplifying(a)) {
-        show("topology", 0);
-        Result<SimplifiedSurface> result = simplifiedSurface(read->mesh, a);
-        if (!result) return {exitFor(result.error().kind), a.input + ": " + result.error().message};
-        simplified = std::move(*result);
-        seconds.topology = secondsSince(start) - seconds.read;
+    Failure fromImage(const EncodeOptions& options)
+    {
+        const Result<FloatImage> image = readGeometryImage(a_.input);
+        if (!image) return {cli::Refused, image.error().message};
+        seconds_.read = secondsSince(start_);
+        return take(encodeImage(*image, options, a_.tolerance.value_or(kSeamTolerance)), {});
     }
-    EncodeOptions options = encodeOptions(a);
-    options.progress = show;
-    Result<EncodedMesh> encoded = simplified.changed() ? encodeAgainst(read->mesh, simplified.mesh, options)
-                                                       : encodeMesh(read->mesh, options);
-    if (!encoded) return {exitFor(encoded.error().kind), a.input + ": " + encoded.error().message};
-    std::vector<std::string> notes = warnings(read->report);
-    for (const auto* more : {&simplified.notes, &encoded->warnings})
-        notes.insert(notes.end(), more->begin(), more->end());
-    encoded->warnings = std::move(notes);
-    made.encoded = std::move(*encoded);
-    seconds.total = secondsSince(start);
-    made.report = report(made.encoded, simplified, seconds);
-    return {};
-}
+
+    Failure fromMesh(const EncodeOptions& options)
+    {
+        Result<MeshFile> read = readMesh(a_.input, readOptions(a_));
+        if (!read) {
+            const bool several = read.error().kind == ErrorKind::SeveralComponents;
+            return {cli::Refused,
+                    read.error().message + (several ? "; --component largest takes the largest" : "")};
+        }
+        seconds_.read = secondsSince(start_);
+        if (asksForSimplifying(a_)) {
+            show("topology", 0);
+            Result<SimplifiedSurface> result = simplifiedSurface(read->mesh, a_);
+            if (!result) return {exitFor(result.error().kind), a_.input + ": " + result.error().message};
+            simplified_ = std::move(*result);
+            seconds_.topology = secondsSince(start_) - seconds_.read;
+        }
+        return take(simplified_.changed() ? encodeAgainst(read->mesh, simplified_.mesh, options)
+                                          : encodeMesh(read->mesh, options),
+                    warnings(read->report));
+    }
+
+    Failure take(Result<EncodedMesh> encoded, std::vector<std::string> notes)
+    {
+        if (!encoded) return {exitFor(encoded.error().kind), a_.input + ": " + encoded.error().message};
+        for (const auto* more : {&simplified_.notes, &encoded->warnings})
+            notes.insert(notes.end(), more->begin(), more->end());
+        encoded->warnings = std::move(notes);
+        made_.encoded = std::move(*encoded);
+        return {};
+    }
+
+    const Arguments& a_;
+    Made& made_;
+    const std::chrono::steady_clock::time_point start_ = std::chrono::steady_clock::now();
+    StatusLine progress_;
+    Seconds seconds_;
+    SimplifiedSurface simplified_;
+};
 
 void tell(const Arguments& a, const EncodedMesh& encoded)
 {
@@ -203,7 +249,7 @@ Failure makeAndWrite(const Arguments& a, const std::optional<cli::Contents>& inp
         return {cli::Refused, folder.string() + ": cannot be created"};
 
     Made made;
-    if (Failure failure = make(a, made); failure.exit != cli::Done) return failure;
+    if (Failure failure = Maker(a, made).make(); failure.exit != cli::Done) return failure;
     if (Failure failure = writeMade(a, made, input); failure.exit != cli::Done) return failure;
     if (!a.quiet) tell(a, made.encoded);
     return {};

@@ -63,7 +63,7 @@ Status writePng(const RgbImage& image, const std::string& path);
 /// Errors: BadArgument, FileNotWritable.
 Status writeExr(const FloatImage& image, const std::string& path);
 
-/// Reads the channels R, G, B of an EXR file; half-float channels are widened.
+/// Reads the channels X, Y, Z of an EXR file, or R, G, B if it has no X; half-float channels are widened.
 /// Errors: FileNotReadable, FileCorrupt (also: a channel is missing), BadArgument (above 32768 x 32768
 /// pixels).
 Result<FloatImage> readExr(const std::string& path);
@@ -74,6 +74,10 @@ Result<FloatImage> readExr(const std::string& path);
 /// size), NotFinite.
 Status writeF32(const FloatImage& image, const std::string& path);
 Result<FloatImage> readF32(const std::string& path);
+
+/// Reads an .exr or .f32 file that is to be a geometry image: square, 2^j + 1 samples a side, 3 to 4097, all
+/// finite. Errors: as readExr and readF32; FormatUnknown (by the name), FileCorrupt (the size), NotFinite.
+Result<FloatImage> readGeometryImage(const std::string& path);
 
 /// Samples a side of a .f32 file, as its size says; 0 if it is not there or has no such size.
 int sideOfF32(const std::string& path);

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gimg/border.h"
+#include "gimg/fit.h"
 #include "gimg/flatten.h"
 #include "gimg/image_io.h"
 #include "gimg/result.h"
@@ -18,6 +19,6 @@ Result<FloatImage> sampleGeometry(const SquareDisk& square, const Parameterizati
 Result<FloatImage> sampleNormals(const SquareDisk& square, const Parameterization& parameterization, int n);
 
 /// Length on the surface of what lies on the border of a geometry image: seam (counted once) and boundary.
-double seamLength(const SquareDisk& square, const FloatImage& geometry);
+double seamLength(const GridSeam& seam, const FloatImage& geometry);
 
 } // namespace gimg

@@ -1,0 +1,39 @@
+#pragma once
+
+#include "codec/encode.h"
+#include "gimg/distance.h"
+#include "gimg/fit.h"
+#include "gimg/image_io.h"
+#include "gimg/result.h"
+
+#include <cstdint>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace gimg {
+
+/// A file and what it is worth.
+struct CodedFile
+{
+    std::vector<std::uint8_t> bytes;
+    float step = 0;      ///< of the geometry
+    double psnr = 0;     ///< of the decoded finest level; 0 where hardly any surface is left
+    double maxError = 1; ///< SurfaceDistance::hausdorff() of it, as a fraction of the diagonal; then 1
+};
+
+Error fromCodec(const codec::EncodeError& error);
+
+template <class T> Result<T> resultOf(codec::Outcome<T> outcome)
+{
+    if (auto* error = std::get_if<codec::EncodeError>(&outcome)) return fromCodec(*error);
+    return std::move(std::get<T>(outcome));
+}
+
+/// Decodes a file and measures its finest level.
+Result<CodedFile> judged(Result<codec::EncodedFile> encoded, const SurfaceMeasure& measure);
+
+/// @param normals  empty for none
+Result<codec::Encoder> encoderOf(const GridSeam& seam, const FloatImage& geometry, const FloatImage& normals);
+
+} // namespace gimg
