@@ -64,7 +64,7 @@ private:
     Result<Unfolded> starOrCut()
     {
         constexpr double kEven = 3;      // times the least energy possible: no need to look further
-        constexpr double kFarMore = 0.7; // of the star's energy
+        constexpr double kFarMore = 0.7; // of the star's energy: below, the cut is taken without trying the star
         const double area = surfaceArea(coarse_.mesh);
         const StarTips tips = findStarTips(coarse_);
         if (!tips.vertices.empty() && tips.energy < kEven * area * area * area) {
@@ -72,9 +72,11 @@ private:
             return alongCut(extrema(FlattenEffort::Full));
         }
         const Extrema reached = extrema(FlattenEffort::Full);
-        if (!tips.vertices.empty() && tips.energy * kFarMore < reached.energyWith)
-            if (Result<Unfolded> star = octahedral(tips)) return star;
-        return alongCut(reached);
+        if (tips.vertices.empty() || reached.energyWith <= kFarMore * tips.energy) return alongCut(reached);
+        // Energies do not decide: the star's seam is the shorter one, the cut's layout can still be improved.
+        Result<Unfolded> star = octahedral(tips), cut = alongCut(reached);
+        if (!star || !cut) return star ? std::move(star) : std::move(cut);
+        return quality(*star) > quality(*cut) ? std::move(star) : std::move(cut);
     }
 
     Result<Unfolded> octahedral(const StarTips& tips)

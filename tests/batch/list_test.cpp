@@ -76,7 +76,7 @@ TEST(List, ALinesOwnOptionsWin)
         ElementsAre("--bytes", "5000", "--grid", "65", "--close-holes", "0.2", "--max-genus", "auto"));
     EXPECT_THAT(fileOptions(*parseLine(
                     {"--from-image", "--max-error", "2e-3", "--tolerance=.001", "--effort", "8", "i.f32", "o.gim"},
-                    defaults)),
+                    defaultsOf(5000))),
                 ElementsAre("--max-error", "0.002", "--from-image", "--tolerance", "0.001", "--effort", "8"));
     EXPECT_THAT(fileOptions(*parseLine({"--raw", "float", "i.ply", "o.gim"}, defaults)),
                 ElementsAre("--raw", "float", "--grid", "65"));
