@@ -163,5 +163,54 @@ TEST(SurfaceCoding, TakesFewerBytesThanComponentsOnTheirOwn)
     EXPECT_LT(2 * surface.size(), wavelet.size());
 }
 
+// A cylinder of radius 1, cells of 0.5 rad by 0.2: second differences of 2 (1 - cos 0.5), cells of sin 0.5
+// times 0.2.
+TEST(SurfaceFrame, TangentialStepsFollowFlatnessUpToTheLevelsLimit)
+{
+    constexpr std::uint32_t n = 5;
+    std::vector<double> plane[kComponents];
+    for (std::uint32_t j = 0; j < n; ++j)
+        for (std::uint32_t i = 0; i < n; ++i) {
+            plane[0].push_back(std::cos(0.5 * i));
+            plane[1].push_back(std::sin(0.5 * i));
+            plane[2].push_back(0.2 * j);
+        }
+    const double* planes[kComponents] = {plane[0].data(), plane[1].data(), plane[2].data()};
+    SurfaceLevel level;
+    level.size = n;
+    SurfaceParameters parameters;
+    const auto ratio = [&](double flatness, double largest) {
+        parameters.flatness = flatness;
+        level.largestRatio = largest;
+        const Frame frame = frameAt(planes, level, parameters, Horizontal, 1, 2);
+        EXPECT_EQ(frame.step[1], frame.step[2]);
+        return frame.step[1] / frame.step[0];
+    };
+    const double bend = 2 * (1 - std::cos(0.5));
+    EXPECT_NEAR(ratio(4, 8), 4 * std::sqrt(0.2 * std::sin(0.5)) / bend, 1e-12);
+    EXPECT_EQ(ratio(4, 2), 2);
+    EXPECT_EQ(ratio(0.5, 8), 1);
+}
+
+// What a bump takes grows little with the plane around it: 64 times the samples, mostly in empty blocks. (Levels
+// above, and the ends of the plane, take something.)
+TEST(SurfaceCoding, EmptyBlocksTakeAlmostNothing)
+{
+    const auto bytes = [](std::uint32_t grid) {
+        Source source;
+        source.grid = grid;
+        source.seam = samples::diskSeam(grid);
+        std::vector<float> xyz;
+        for (std::uint32_t j = 0; j < grid; ++j)
+            for (std::uint32_t i = 0; i < grid; ++i) {
+                const double x = i - 20.0, y = j - 20.0, height = 8 * std::exp(-(x * x + y * y) / 8);
+                for (const double value : {x, y, height}) xyz.push_back(static_cast<float>(value));
+            }
+        source.xyz = xyz;
+        return static_cast<double>(samples::encoded(source, {GIM_CODING_SURFACE, 0.01f, 0}).size());
+    };
+    EXPECT_LT(bytes(257), 2.3 * bytes(33));
+}
+
 } // namespace
 } // namespace gimg::codec
