@@ -2,6 +2,7 @@
 """Puts the tables of docs/how-good.md in from a sweep, and copies its curves to docs/images.
 
     docs/pictures/how_good.py report-output
+    docs/pictures/how_good.py --all report-output     # only the table of all meshes
 
 The folder is one that `bench/report` or `gimrd sweep` wrote. Needs nothing but Python.
 """
@@ -29,26 +30,42 @@ def put(page, name, text):
     return f"{before}<!-- {name} -->\n{text}\n<!-- end -->{after}"
 
 
-def main(folder):
+def read(folder):
+    """PSNR by mesh, coder and bytes; the meshes' triangles; the sizes."""
     results = json.loads((folder / "results.json").read_text())
     points = {}
+    triangles = {m["name"]: m["faces"] for m in results["meshes"]}
     for p in results["points"]:
         if p["state"] == "done":
             points.setdefault(p["mesh"], {}).setdefault(p["coder"], {})[p["target"]] = p["psnr"]
-    sizes = sorted({t for coders in points.values() for done in coders.values() for t in done})
+    return points, triangles, sorted({t for coders in points.values() for done in coders.values() for t in done})
 
+
+def beside_draco(coders, sizes):
+    cells = []
+    for size in sizes:
+        ours, theirs = (coders.get(c, {}).get(size) for c in ("gim", "draco-lt"))
+        text = [f"{v:.1f}" if v is not None else "-" for v in (ours, theirs)]
+        best = None if None in (ours, theirs) else int(theirs > ours)
+        if best is not None:
+            text[best] = f"**{text[best]}**"
+        cells.append(" / ".join(text))
+    return cells
+
+
+def put_all(folder):
+    points, triangles, sizes = read(folder)
+    rows = [[mesh, f"{triangles[mesh]:,}"] + beside_draco(points[mesh], sizes)
+            for mesh in sorted(points, key=lambda mesh: (-triangles[mesh], mesh))]
+    PAGE.write_text(put(PAGE.read_text(), "all", table(["mesh", "triangles"] + [f"{s:,}" for s in sizes], rows)))
+
+
+def put_chosen(folder):
+    points, _, sizes = read(folder)
     page = PAGE.read_text()
     rows = []
     for mesh, coders in sorted(points.items()):
-        cells = []
-        for size in sizes:
-            ours, theirs = (coders.get(c, {}).get(size) for c in ("gim", "draco-lt"))
-            text = [f"{v:.1f}" if v is not None else "-" for v in (ours, theirs)]
-            best = None if None in (ours, theirs) else int(theirs > ours)
-            if best is not None:
-                text[best] = f"**{text[best]}**"
-            cells.append(" / ".join(text))
-        rows.append([mesh] + cells)
+        rows.append([mesh] + beside_draco(coders, sizes))
     page = put(page, "meshes", table(["mesh"] + [f"{s:,}" for s in sizes], rows))
 
     whole = [m for m, c in points.items() if all(c.get(k, {}).get(s) is not None for k in SHOWN if k in c for s in sizes)]
@@ -65,4 +82,7 @@ def main(folder):
             shutil.copyfile(folder / source, IMAGES / target)
 
 
-main(Path(sys.argv[1]))
+if sys.argv[1] == "--all":
+    put_all(Path(sys.argv[2]))
+else:
+    put_chosen(Path(sys.argv[1]))
