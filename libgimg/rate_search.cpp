@@ -40,7 +40,7 @@ public:
     Result<CodedFile> run()
     {
         if (const Status found = closeIn(); !found) return found.error();
-        if (!isMet() && !atCoarsest_)
+        if (!isMet() && !atCoarsest_ && (!best_ || quality(*best_, target_) - asked_ < kHopeless))
             if (const Status found = scan(); !found) return found.error();
         if (!isMet() && target_ == EncodeTarget::Psnr && window_ < kLooseWindow)
             return Error{ErrorKind::TargetUnreachable,
@@ -50,6 +50,7 @@ public:
     }
 
 private:
+    static constexpr double kHopeless = 2; // dB: a jump so high is no accident of the step
     static constexpr int kDoubtful = 3, kMostClosing = 24, kMostTrials = 48;
 
     struct End

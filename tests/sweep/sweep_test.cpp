@@ -1,6 +1,6 @@
 // gimrd sweep, run as a user does: whole, killed, in parts, with coders that misbehave.
+#include "corpus/shapes.h"
 #include "gimg/decode.h"
-
 #include "gimg/mesh_io.h"
 #include "shapes.h"
 #include "temporary_files.h"
@@ -258,6 +258,18 @@ TEST_F(Sweep, FailingMeshDoesNotStopTheOthers)
     EXPECT_EQ(again.code, 1);
     EXPECT_EQ(point("o/points/none/gim-17-900.json").at("state"), "done");
     EXPECT_THAT(again.err, Not(HasSubstr("ring gim")));
+}
+
+TEST_F(Sweep, AGridTooSmallForTheCutIsNoFailure)
+{
+    mesh("ladder.ply", shapes::surfaceOfGenus(7, 0, 4));
+    const Ended ended =
+        run("ladder.ply ring.ply --bytes 900 --grids 9 --samples 2000 --coders none --peers raw-zlib --out o");
+    EXPECT_EQ(ended.code, 0) << ended.err;
+    const nlohmann::json ladder = point("o/points/ladder/raw-zlib-9-900.json");
+    EXPECT_EQ(ladder.at("state"), "unreachable");
+    EXPECT_THAT(ladder.at("message"), HasSubstr("too much for a grid of 9"));
+    EXPECT_EQ(point("o/points/ring/raw-zlib-9-900.json").at("state"), "done");
 }
 
 TEST_F(Sweep, CodersThatMisbehaveAreReported)

@@ -97,7 +97,7 @@ private:
     Point blank(const Job& job, size_t size, const SweepReference* reference) const;
     Status fill(Point& point, const CodedFile& coded, const Job& job, const SweepReference& reference);
     void settle(Work& work, const Point& point);
-    void failOpen(Work& work, const std::string& message, const SweepReference* reference);
+    void failOpen(Work& work, const Error& error, const SweepReference* reference);
     std::optional<Point> stored(const Job& job, size_t size) const
     {
         return storedPoint(folder_, plan_, job, size, hashes_[job.mesh], options_.samples);
@@ -287,11 +287,13 @@ void Runner::settle(Work& work, const Point& point)
     progress_.finish(point.mesh, series, point.target, weightOf(work.job), seconds, outcomeOf(point));
 }
 
-void Runner::failOpen(Work& work, const std::string& message, const SweepReference* reference)
+// Ends all that is open with an error: a failure, or something that cannot be had.
+void Runner::failOpen(Work& work, const Error& error, const SweepReference* reference)
 {
     for (const size_t size : std::vector<size_t>(work.open)) {
         Point point = blank(work.job, size, reference);
-        point.message = folder_.withoutFolders(message);
+        if (error.kind == ErrorKind::TargetUnreachable) point.state = Point::State::Unreachable;
+        point.message = folder_.withoutFolders(error.message);
         settle(work, point);
     }
 }
@@ -300,10 +302,10 @@ void Runner::attempt(Work& work)
 {
     const Job& job = work.job;
     const Result<std::shared_ptr<SweepReference>> made = reference(job.mesh);
-    if (!made) return failOpen(work, made.error().message, nullptr);
+    if (!made) return failOpen(work, made.error(), nullptr);
     const SweepReference& reference = **made;
     const Result<fs::path> input = inputOf(job, reference);
-    if (!input) return failOpen(work, input.error().message, &reference);
+    if (!input) return failOpen(work, input.error(), &reference);
 
     const fs::path out = folder_.jobFolder(plan_.meshes[job.mesh].name, seriesOf(job).id);
     std::error_code ignored;
@@ -322,7 +324,9 @@ void Runner::attempt(Work& work)
                       folder_.withoutFolders(coded.error().message));
         allEndedWell_ = false;
     }
-    failOpen(work, coded ? "the coder gave no answer for this size" : coded.error().message, &reference);
+    failOpen(work,
+             coded ? Error{ErrorKind::CodecFailure, "the coder gave no answer for this size"} : coded.error(),
+             &reference);
 }
 
 void Runner::run(Work& work)
