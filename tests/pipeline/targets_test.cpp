@@ -90,7 +90,7 @@ TEST(EncodeMaxError, WhereTheStepDoesNotDecideSaysSo)
 TEST(EncodeEffort, BuysDecibels)
 {
     const Mesh mesh = shapes::wavySphere(1, 0.3, 5, 24);
-    EncodeOptions options = forBytes(2000, 129);
+    EncodeOptions options = forBytes(1000, 65);
     double psnr[3];
     for (int k = 0; k < 3; ++k) {
         options.effort = std::array{1, 6, 8}[static_cast<size_t>(k)];
