@@ -96,8 +96,8 @@ void codeBlocks(Coder& coder, SurfaceModels& models, const SurfaceWork& work, co
 /// Codes the details of one level. On entry work.surface holds the prediction and work.detail zeros; on
 /// return work.detail holds the details as vectors.
 /// @param pick  pick(coder, context, component, index in the level, frame) codes a detail with
-/// codeSurfaceDetail() and returns it; an encoder knows what holds zeros only: pick.isEmpty(orientation,
-/// component) of a band, pick.isFilled(bi, bj, direction) of a block
+/// codeSurfaceDetail() and returns it; asked of encoders: pick.isEmpty(), of the level, and
+/// pick.isFilled(bi, bj, direction), of a block
 /// @return whether any block is filled
 template <class Coder, class Pick>
 bool codeLevel(Coder& coder, SurfaceModels& models, const SurfaceParameters& parameters, SurfaceWork& work,
