@@ -1,18 +1,8 @@
 #!/bin/sh
 # gimparam on a torus: what it writes, reports and exits with.
 # usage: gimparam_test.sh GIMPARAM GIMSHAPE
-set -u
+. "${0%/*}/expect.sh"
 gimparam=$1 gimshape=$2
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-failures=0
-
-expect() { # what, expected, found
-    if [ "$2" != "$3" ]; then
-        echo "$1: expected '$2', found '$3'"
-        failures=$((failures + 1))
-    fi
-}
 reported() { sed -n 's/^ *"'"$1"'": \([^,]*\),*$/\1/p' "$work/report.json"; }
 
 "$gimshape" torus "$work/torus.ply" --resolution 6 > "$work/out" || exit 1
@@ -30,13 +20,6 @@ expect efficiency 0.5 "$(awk -v e="$(reported stretch_efficiency)" 'BEGIN { prin
 expect header 1 "$(grep -a -c 'property double quality' "$work/map.ply")"
 
 # Exit codes, with one line on standard error each.
-refused() { # expected code, command...
-    code=$1
-    shift
-    "$@" > "$work/out" 2> "$work/err"
-    expect "exit of $*" "$code" $?
-    expect "lines of $*" 1 "$(wc -l < "$work/err" | tr -d ' ')"
-}
 refused 1 "$gimparam" "$work/absent.ply" "$work/map.ply"
 refused 1 "$gimparam" --param tutte "$work/torus.ply" "$work/absent/map.ply"
 refused 2 "$gimparam" --param tutte "$work/torus.ply" "$work/map.stl"
@@ -44,5 +27,4 @@ refused 2 "$gimparam" --extrema -1 "$work/torus.ply" "$work/map.ply"
 refused 2 "$gimparam" --layout octahedral "$work/torus.ply" "$work/map.ply"
 refused 2 "$gimparam" "$work/torus.ply"
 
-[ "$failures" -eq 0 ] || echo "$failures checks failed"
-[ "$failures" -eq 0 ]
+finish

@@ -1,18 +1,8 @@
 #!/bin/sh
 # gimdec and giminfo on the golden and the malformed files: what they print, write and exit with.
 # usage: tools_test.sh GIMDEC GIMINFO TESTS_FOLDER
-set -u
+. "${0%/*}/expect.sh"
 gimdec=$1 giminfo=$2 tests=$3
-work=$(mktemp -d) || exit 1
-trap 'rm -rf "$work"' EXIT
-failures=0
-
-expect() { # what, expected, found
-    if [ "$2" != "$3" ]; then
-        echo "$1: expected '$2', found '$3'"
-        failures=$((failures + 1))
-    fi
-}
 
 golden=$tests/golden/v1-wavelet-boundary.gim
 expect "seam word" "seam       a B c a' c' D" "$("$giminfo" "$golden" | grep '^seam')"
@@ -42,14 +32,6 @@ done
 "$gimdec" --image "$work/image.exr" "$torus" "$work/mesh.ply" && [ -s "$work/image.exr" ] || failures=$((failures + 1))
 
 # Exit codes, with one line on standard error each.
-refused() { # expected code, command...
-    code=$1
-    shift
-    "$@" > "$work/out" 2> "$work/err"
-    expect "exit of $*" "$code" $?
-    expect "lines of $*" 1 "$(wc -l < "$work/err" | tr -d ' ')"
-    expect "output of $*" 0 "$(wc -c < "$work/out" | tr -d ' ')"
-}
 for file in "$tests"/malformed/*.gim; do
     case $file in
     */limit-*) continue ;; # within the limits the tools set
@@ -72,5 +54,4 @@ refused 2 "$gimdec" --colour "$torus" "$work/mesh.ply"
 refused 2 "$gimdec" "$torus"
 refused 2 "$giminfo"
 
-[ "$failures" -eq 0 ] || echo "$failures checks failed"
-[ "$failures" -eq 0 ]
+finish
