@@ -1,6 +1,6 @@
 #include "convex_combination.h"
 
-#include "one_blas_thread.h"
+#include "one_solver_thread.h"
 
 #include <Eigen/CholmodSupport>
 #include <Eigen/UmfPackSupport>
@@ -78,7 +78,7 @@ Status placeAtMeans(const std::vector<MeanWeight>& weights, Weights kind, const 
 {
     const MeanSystem system = assemble(weights, kind, fixed, position);
     if (system.right.rows() == 0) return Done{};
-    const OneBlasThread oneThread;
+    const OneSolverThread oneThread;
     Positions solution;
     const bool solved =
         kind == Weights::Symmetric ? solveSymmetric(system, solution) : solveGeneral(system, solution);

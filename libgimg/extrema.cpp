@@ -4,6 +4,10 @@
 #include "gimg/cut.h"
 #include "gimg/stretch.h"
 #include "hierarchy.h"
+#include "one_solver_thread.h"
+
+#include <tbb/parallel_for_each.h>
+#include <tbb/task_arena.h>
 
 #include <algorithm>
 #include <cmath>
@@ -26,6 +30,13 @@ double flattenedEnergy(const Mesh& mesh, const CutGraph& cut, SquareLayout layou
         flattenToSquare(*square, curvatureImportance(square->surface, square->grid), {}, effort);
     return map ? quarticStretchEnergy(square->disk.mesh, map->st) : kInfinity;
 }
+
+struct Candidate
+{
+    int vertex;
+    CutGraph cut; // extended to it
+    double energy;
+};
 
 class FarthestVertex
 {
@@ -104,21 +115,38 @@ Extrema findExtrema(const SimplifiedMesh& simplified, const ExtremaOptions& opti
     found.energyWithout = found.energyWith = flattenedEnergy(coarse, cut, SquareLayout::Cut, options.effort);
     std::vector<int> failed;
     double tried = 0;
-    for (int rejections = 0; rejections < options.rejections; ++tried) {
+    const OneSolverThread oneThread; // each
+    // Most candidates fail, so the next one is tried at the same time as if this one did.
+    const bool ahead = tbb::this_task_arena::max_concurrency() > 1;
+    for (int rejections = 0; rejections < options.rejections;) {
         if (progress) progress(1 - kTypicalCandidates / (kTypicalCandidates + tried));
         if (std::isinf(found.energyWith) || static_cast<int>(found.vertices.size()) >= options.most) break;
-        const int candidate = farthest.from(cut, failed);
-        if (candidate < 0) break;
-        found.vertices.push_back(candidate);
-        CutGraph extended = cutToDisk(coarse, found.vertices);
-        const double energy = flattenedEnergy(coarse, extended, SquareLayout::Cut, options.effort);
-        if (energy < kKept * found.energyWith) {
-            found.energyWith = energy;
-            cut = std::move(extended);
-            rejections = 0;
-        } else {
-            found.vertices.pop_back();
-            failed.push_back(candidate);
+        std::vector<Candidate> candidates;
+        std::vector<int> passed = failed;
+        const int most = ahead && rejections + 1 < options.rejections ? 2 : 1;
+        while (static_cast<int>(candidates.size()) < most) {
+            const int vertex = farthest.from(cut, passed);
+            if (vertex < 0) break;
+            candidates.push_back({vertex, {}, 0});
+            passed.push_back(vertex);
+        }
+        if (candidates.empty()) break;
+        tbb::parallel_for_each(candidates, [&](Candidate& candidate) {
+            std::vector<int> vertices = found.vertices;
+            vertices.push_back(candidate.vertex);
+            candidate.cut = cutToDisk(coarse, vertices);
+            candidate.energy = flattenedEnergy(coarse, candidate.cut, SquareLayout::Cut, options.effort);
+        });
+        for (Candidate& candidate : candidates) {
+            ++tried;
+            if (candidate.energy < kKept * found.energyWith) {
+                found.vertices.push_back(candidate.vertex);
+                found.energyWith = candidate.energy;
+                cut = std::move(candidate.cut);
+                rejections = 0;
+                break; // the other one was for another cut
+            }
+            failed.push_back(candidate.vertex);
             ++rejections;
         }
     }
@@ -132,16 +160,18 @@ StarTips findStarTips(const SimplifiedMesh& simplified)
     const FarthestVertex farthest(simplified.mesh);
     std::vector<int> tips = {farthest.from(std::vector<int>{simplified.mesh.faces[0][0]})};
     while (tips.size() < 4 + kSpares && tips.back() >= 0) tips.push_back(farthest.from(tips));
+    std::vector<StarTips> stars;
+    for (size_t last = 3; last < tips.size() && tips[last] >= 0; ++last)
+        stars.push_back({{tips[0], tips[1], tips[2], tips[last]}, kInfinity});
+    const OneSolverThread oneThread; // each
+    tbb::parallel_for_each(stars, [&](StarTips& star) {
+        star.energy = flattenedEnergy(simplified.mesh, starCut(simplified.mesh, star.vertices),
+                                      SquareLayout::Octahedral, FlattenEffort::Full);
+    });
     StarTips best;
     best.energy = kInfinity;
-    for (size_t last = 3; last < tips.size() && tips[last] >= 0; ++last) {
-        const std::vector<int> four = {tips[0], tips[1], tips[2], tips[last]};
-        const CutGraph star = starCut(simplified.mesh, four);
-        const double energy =
-            flattenedEnergy(simplified.mesh, star, SquareLayout::Octahedral, FlattenEffort::Full);
-        if (!(energy < best.energy)) continue;
-        best = {four, energy};
-    }
+    for (const StarTips& star : stars)
+        if (star.energy < best.energy) best = star;
     for (int& v : best.vertices) v = simplified.vertexOf[v];
     return best;
 }

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <optional>
 
 namespace gimg {
 namespace {
@@ -219,9 +218,14 @@ Result<Parameterization> flattenToSquare(const SquareDisk& square, const Progres
 Result<Parameterization> flattenToSquare(const SquareDisk& square, const std::vector<double>& onSurface,
                                          const Progress& progress, FlattenEffort effort)
 {
+    // From so many vertices on a map that follows every bump is less smooth, and what it samples takes no
+    // fewer bytes.
+    constexpr int kFine = 10000;
     const bool trial = effort == FlattenEffort::Trial;
+    const bool early = effort == FlattenEffort::Full && square.disk.mesh.vertexCount() >= kFine;
     constexpr DescentOptions kFirstDescent{50, 1e-4}, kLastDescent{12, 1e-3};
-    const DescentOptions kReleaseDescent{200, trial ? 3e-3 : 1e-4}, kDescent{trial ? 4 : 30, 1e-3};
+    const DescentOptions kReleaseDescent{200, trial ? 3e-3 : 1e-4};
+    const DescentOptions kDescent{trial ? 4 : early ? 8 : 30, 1e-3};
     // From so many vertices on the seam may slide: fewer do not tell where to.
     constexpr int kReleased = 500;
     const BorderTies ties = borderTies(square);
@@ -232,33 +236,37 @@ Result<Parameterization> flattenToSquare(const SquareDisk& square, const std::ve
         for (int v : square.disk.origin) importance.push_back(onSurface[v]);
     Parameterization result;
     result.st = square.borderPosition;
-    std::optional<Hierarchy> hierarchy(std::in_place, disk, square.squareSides);
-    const int interior = hierarchy->interiorCount();
-    hierarchy->coarsen();
+    Hierarchy hierarchy(disk, square.squareSides);
+    const int interior = hierarchy.interiorCount();
+    hierarchy.coarsen();
     if (progress) progress(0.1);
 
-    Level coarsest(*hierarchy, importance, square.squareSides, result.st);
+    Level coarsest(hierarchy, importance, square.squareSides, result.st);
     if (const Status started = startCoarsest(coarsest); !started) return started.error();
     coarsest.descend(ties, false, kFirstDescent);
     coarsest.storePositions(result.st);
 
-    for (bool full = hierarchy->isFull(); !full;) {
-        const int target = hierarchy->interiorCount() * kGrowth;
-        while (!hierarchy->isFull() && hierarchy->interiorCount() < target) {
-            const int v = hierarchy->refine();
-            const Star star(disk, importance, hierarchy->star(v), result.st);
+    for (bool full = hierarchy.isFull(); !full;) {
+        const int target = hierarchy.interiorCount() * kGrowth;
+        while (!hierarchy.isFull() && hierarchy.interiorCount() < target) {
+            const int v = hierarchy.refine();
+            const Star star(disk, importance, hierarchy.star(v), result.st);
             if (!star.place(result.st[v]))
                 return Error{ErrorKind::FlippedTriangle, "no room left in the plane for surface vertex " +
                                                              std::to_string(square.disk.origin[v])};
             star.descend(result.st[v]);
         }
-        sweepVertices(disk, importance, *hierarchy, square.squareSides, result.st);
-        Level level(*hierarchy, importance, square.squareSides, result.st);
-        const int reached = hierarchy->interiorCount();
-        full = hierarchy->isFull();
-        if (full) hierarchy.reset(); // the last descent needs the memory
+        sweepVertices(disk, importance, hierarchy, square.squareSides, result.st);
+        Level level(hierarchy, importance, square.squareSides, result.st);
+        const int reached = hierarchy.interiorCount();
+        full = hierarchy.isFull();
         const bool release = full || reached >= kReleased;
-        level.descend(ties, release, release && !released ? kReleaseDescent : full ? kLastDescent : kDescent);
+        if (release && !released)
+            level.descend(ties, true, kReleaseDescent);
+        else if (!full)
+            level.descend(ties, release, kDescent);
+        else if (!early)
+            level.descend(ties, true, kLastDescent);
         released = release;
         level.storePositions(result.st);
         if (progress) progress(0.1 + 0.9 * reached / std::max(1, interior));

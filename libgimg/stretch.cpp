@@ -1,6 +1,6 @@
 #include "gimg/stretch.h"
 
-#include "one_blas_thread.h"
+#include "one_solver_thread.h"
 #include "stretch_descent.h"
 #include "stretch_element.h"
 
@@ -276,7 +276,7 @@ double minimizeStretch(const Mesh& mesh, const std::vector<double>& importance,
                        const std::vector<Freedom>& freedom, int unknowns, std::vector<Vec2>& st,
                        const DescentOptions& options)
 {
-    const OneBlasThread oneThread;
+    const OneSolverThread oneThread;
     return StretchDescent(mesh, importance, freedom, unknowns, st).run(options);
 }
 

@@ -3,10 +3,12 @@
 #include "gimg/extrema.h"
 #include "gimg/stretch.h"
 #include "layout_search.h"
+#include "one_solver_thread.h"
 
-#include <algorithm>
-#include <cmath>
-#include <span>
+#include <tbb/parallel_invoke.h>
+
+#include <mutex>
+#include <optional>
 
 namespace gimg {
 namespace {
@@ -56,15 +58,13 @@ private:
         ExtremaOptions options;
         options.effort = effort;
         options.most = options_.extrema.value_or(options.most);
-        return findExtrema(coarse_, options, [&](double fraction) {
-            if (progress_) progress_("cut", fraction);
-        });
+        return findExtrema(coarse_, options, [&](double fraction) { progress_("cut", fraction); });
     }
 
     Result<Unfolded> starOrCut()
     {
         constexpr double kEven = 3;      // times the least energy possible: no need to look further
-        constexpr double kFarMore = 0.7; // of the star's energy: below, the cut is taken without trying the star
+        constexpr double kFarMore = 0.7; // of the star's: below, the cut is taken without trying the star
         const double area = surfaceArea(coarse_.mesh);
         const StarTips tips = findStarTips(coarse_);
         if (!tips.vertices.empty() && tips.energy < kEven * area * area * area) {
@@ -74,9 +74,11 @@ private:
         const Extrema reached = extrema(FlattenEffort::Full);
         if (tips.vertices.empty() || reached.energyWith <= kFarMore * tips.energy) return alongCut(reached);
         // Energies do not decide: the star's seam is the shorter one, the cut's layout can still be improved.
-        Result<Unfolded> star = octahedral(tips), cut = alongCut(reached);
-        if (!star || !cut) return star ? std::move(star) : std::move(cut);
-        return quality(*star) > quality(*cut) ? std::move(star) : std::move(cut);
+        const OneSolverThread oneThread; // each
+        std::optional<Result<Unfolded>> star, cut;
+        tbb::parallel_invoke([&] { star = octahedral(tips); }, [&] { cut = alongCut(reached); });
+        if (!*star || !*cut) return std::move(*star ? *star : *cut);
+        return std::move(quality(**star) > quality(**cut) ? *star : *cut);
     }
 
     Result<Unfolded> octahedral(const StarTips& tips)
@@ -166,10 +168,7 @@ private:
     Result<Unfolded> flattened(CutGraph cut, SquareDisk square, int extrema, SquareLayout layout) const
     {
         Result<Parameterization> map = mapToSquare(
-            square, options_.param,
-            [&](double fraction) {
-                if (progress_) progress_("parameterize", fraction);
-            },
+            square, options_.param, [&](double fraction) { progress_("parameterize", fraction); },
             options_.density);
         if (!map) return map.error();
         return Unfolded{std::move(cut), layout, extrema, std::move(square), std::move(*map)};
@@ -193,7 +192,12 @@ private:
 Result<Unfolded> unfold(const Mesh& mesh, const UnfoldOptions& options, const UnfoldJudge& judge,
                         const UnfoldProgress& progress)
 {
-    return Unfolder(mesh, options, judge, progress).run();
+    std::mutex oneReport; // while two layouts are flattened at a time
+    const UnfoldProgress inTurn = [&](const char* stage, double fraction) {
+        const std::lock_guard lock(oneReport);
+        if (progress) progress(stage, fraction);
+    };
+    return Unfolder(mesh, options, judge, inTurn).run();
 }
 
 } // namespace gimg

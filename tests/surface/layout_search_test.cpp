@@ -34,7 +34,7 @@ Flattened flatten(const Mesh& mesh, const CutGraph& cut, const BorderLayout& lay
 {
     Result<SquareDisk> square = layOutBorder(mesh, cut, layout, 257);
     EXPECT_TRUE(square.ok()) << square.error().message;
-    Result<Parameterization> map = flattenToSquare(*square, {}, Density::Even);
+    Result<Parameterization> map = flattenToSquare(*square, {}, {}, FlattenEffort::Converged);
     EXPECT_TRUE(map.ok()) << map.error().message;
     const double energy = quarticStretchEnergy(square->disk.mesh, map->st);
     return {std::move(*square), std::move(*map), energy};

@@ -22,10 +22,12 @@ enum class Density
     Even,      ///< the same everywhere: the stretch alone counts
 };
 
+/// How far the stretch is brought down.
 enum class FlattenEffort
 {
-    Full,
-    Trial, ///< descends less far: the energy ends up a few per cent higher, which tells layouts apart
+    Full,      ///< as far as files get smaller by it
+    Trial,     ///< less far: the energy ends up a few per cent higher, which tells cuts apart
+    Converged, ///< near a minimum on the finest level, where derivatives tell what moves of the border do
 };
 
 /// Called now and then with the fraction done, in [0,1].
