@@ -9,6 +9,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
+#include <mutex>
 #include <string_view>
 
 namespace gimg {
@@ -138,8 +139,10 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
 
     stage("cut", 0);
     std::optional<SurfaceMeasure> measure; // built when needed: it takes as much memory as the mesh
+    std::once_flag isBuilt;
     const auto measured = [&]() -> const SurfaceMeasure& {
-        return measure ? *measure : measure.emplace(options.reference ? *options.reference : mesh);
+        std::call_once(isBuilt, [&] { measure.emplace(options.reference ? *options.reference : mesh); });
+        return *measure;
     };
     double cutSeconds = 0;
     Result<Unfolded> unfolded =

@@ -108,35 +108,41 @@ Extrema findExtrema(const Mesh& mesh, const ExtremaOptions& options, const Progr
 Extrema findExtrema(const SimplifiedMesh& simplified, const ExtremaOptions& options, const Progress& progress)
 {
     constexpr double kTypicalCandidates = 8; // tells progress no more than roughly
+    constexpr int kNone = -1;
     const Mesh& coarse = simplified.mesh;
     const FarthestVertex farthest(coarse);
     Extrema found;
     CutGraph cut = cutToDisk(coarse);
-    found.energyWithout = found.energyWith = flattenedEnergy(coarse, cut, SquareLayout::Cut, options.effort);
     std::vector<int> failed;
     double tried = 0;
     const OneSolverThread oneThread; // each
-    // Most candidates fail, so the next one is tried at the same time as if this one did.
-    const bool ahead = tbb::this_task_arena::max_concurrency() > 1;
-    for (int rejections = 0; rejections < options.rejections;) {
-        if (progress) progress(1 - kTypicalCandidates / (kTypicalCandidates + tried));
-        if (std::isinf(found.energyWith) || static_cast<int>(found.vertices.size()) >= options.most) break;
-        std::vector<Candidate> candidates;
+    const auto judge = [&](Candidate& candidate) {
+        std::vector<int> vertices = found.vertices;
+        if (candidate.vertex != kNone) vertices.push_back(candidate.vertex);
+        candidate.cut = cutToDisk(coarse, vertices);
+        candidate.energy = flattenedEnergy(coarse, candidate.cut, SquareLayout::Cut, options.effort);
+    };
+    // Most candidates fail, so the next one is tried at the same time as if this one did; the first, at the
+    // same time as the cut without any.
+    const int atOnce = tbb::this_task_arena::max_concurrency() > 1 ? 2 : 1;
+    int rejections = 0;
+    const auto next = [&](std::vector<Candidate> candidates) {
         std::vector<int> passed = failed;
-        const int most = ahead && rejections + 1 < options.rejections ? 2 : 1;
-        while (static_cast<int>(candidates.size()) < most) {
+        for (int left =
+                 std::min(options.rejections - rejections, atOnce - static_cast<int>(candidates.size()));
+             left > 0; --left) {
             const int vertex = farthest.from(cut, passed);
             if (vertex < 0) break;
             candidates.push_back({vertex, {}, 0});
             passed.push_back(vertex);
         }
-        if (candidates.empty()) break;
-        tbb::parallel_for_each(candidates, [&](Candidate& candidate) {
-            std::vector<int> vertices = found.vertices;
-            vertices.push_back(candidate.vertex);
-            candidate.cut = cutToDisk(coarse, vertices);
-            candidate.energy = flattenedEnergy(coarse, candidate.cut, SquareLayout::Cut, options.effort);
-        });
+        tbb::parallel_for_each(candidates, judge);
+        return candidates;
+    };
+    std::vector<Candidate> candidates = next({{kNone, cut, 0}});
+    found.energyWithout = found.energyWith = candidates[0].energy;
+    candidates.erase(candidates.begin());
+    while (std::isfinite(found.energyWith) && static_cast<int>(found.vertices.size()) < options.most) {
         for (Candidate& candidate : candidates) {
             ++tried;
             if (candidate.energy < kKept * found.energyWith) {
@@ -149,6 +155,9 @@ Extrema findExtrema(const SimplifiedMesh& simplified, const ExtremaOptions& opti
             failed.push_back(candidate.vertex);
             ++rejections;
         }
+        if (progress) progress(1 - kTypicalCandidates / (kTypicalCandidates + tried));
+        candidates = next({});
+        if (candidates.empty()) break;
     }
     for (int& v : found.vertices) v = simplified.vertexOf[v];
     return found;

@@ -41,19 +41,22 @@ Hierarchy::Hierarchy(const Mesh& disk, const std::vector<uint8_t>& squareSides)
     scale_ *= 1e-3 / static_cast<double>(std::max<size_t>(1, faces_.size()));
 }
 
-std::vector<int> Hierarchy::ring(int v) const
+void Hierarchy::findRing(int v)
 {
     // Each face at v contributes a step from its second to its third corner.
-    std::vector<std::pair<int, int>> steps;
-    for (const Triangle& t : star(v)) steps.push_back({t[1], t[2]});
-    std::vector<int> ordered = {steps[0].first};
-    for (size_t i = 1; i < steps.size(); ++i)
-        for (const auto& step : steps)
-            if (step.first == ordered.back()) {
-                ordered.push_back(step.second);
+    steps_.clear();
+    for (int f : facesOf_[v]) {
+        const Triangle& t = faces_[f];
+        const int k = t[0] == v ? 0 : t[1] == v ? 1 : 2;
+        steps_.push_back({t[(k + 1) % 3], t[(k + 2) % 3]});
+    }
+    ring_ = {steps_[0].first};
+    for (size_t i = 1; i < steps_.size(); ++i)
+        for (const auto& step : steps_)
+            if (step.first == ring_.back()) {
+                ring_.push_back(step.second);
                 break;
             }
-    return ordered;
 }
 
 std::vector<Triangle> Hierarchy::star(int v) const
@@ -91,7 +94,8 @@ int Hierarchy::commonNeighbours(int u)
 // The cheapest neighbour that v may collapse to.
 bool Hierarchy::findCollapse(int v, size_t largestValence, Candidate& candidate)
 {
-    const std::vector<int> around = ring(v);
+    findRing(v);
+    const std::vector<int>& around = ring_;
     const size_t k = around.size();
     candidate.cost = std::numeric_limits<double>::infinity();
     candidate.vertex = v;
@@ -100,6 +104,13 @@ bool Hierarchy::findCollapse(int v, size_t largestValence, Candidate& candidate)
     for (int w : around) {
         ringMark_[w] = mark_;
         borderNeighbours += squareSides_[w] != 0;
+    }
+    normals_.resize(k); // of v's faces, twice their area long; with their lengths
+    for (size_t j = 0; j < k; ++j) {
+        const Vec3 &p = disk_.positions[v], &a = disk_.positions[around[j]],
+                   &b = disk_.positions[around[(j + 1) % k]];
+        const Vec3 normal = (a - p).cross(b - p);
+        normals_[j] = {normal, normal.norm()};
     }
     for (size_t i = 0; i < k; ++i) {
         const int u = around[i];
@@ -119,10 +130,11 @@ bool Hierarchy::findCollapse(int v, size_t largestValence, Candidate& candidate)
             if (j == i || next == i) continue;
             const Vec3& a = disk_.positions[around[j]];
             const Vec3& b = disk_.positions[around[next]];
-            const Vec3 before = (a - disk_.positions[v]).cross(b - disk_.positions[v]);
+            const auto& [before, beforeLength] = normals_[j];
             const Vec3 after = (a - disk_.positions[u]).cross(b - disk_.positions[u]);
-            if (before.dot(after) <= 0.2 * before.norm() * after.norm())
-                cost += after.norm() * (a - disk_.positions[u]).squaredNorm();
+            const double afterLength = after.norm();
+            if (before.dot(after) <= 0.2 * beforeLength * afterLength)
+                cost += afterLength * (a - disk_.positions[u]).squaredNorm();
         }
         // Link condition: only the two ring vertices next to u may be neighbours of both, or an edge doubles.
         if (cost < candidate.cost && commonNeighbours(u) == 2) {
@@ -189,7 +201,7 @@ void Hierarchy::coarsen(size_t largestValence, int interior)
             queue.push(now);
             continue;
         }
-        const std::vector<int> around = ring(best.vertex);
+        const std::vector<int> around = ring_; // as findCollapse left it
         collapse(now);
         for (int w : around) enqueue(w);
     }

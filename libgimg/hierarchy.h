@@ -43,7 +43,7 @@ private:
     };
     struct Candidate;
 
-    std::vector<int> ring(int v) const; // ordered neighbours of an interior vertex
+    void findRing(int v); // sets ring_
     bool findCollapse(int v, size_t largestValence, Candidate& candidate);
     void coarsen(size_t largestValence, int interior);
     int commonNeighbours(int u); // of u and the vertex whose ring is marked
@@ -58,6 +58,9 @@ private:
     std::vector<std::vector<int>> facesOf_;
     std::vector<Eigen::Matrix4d> quadric_;
     std::vector<Removal> removals_;
+    std::vector<int> ring_; // ordered neighbours of the vertex last looked at
+    std::vector<std::pair<int, int>> steps_;
+    std::vector<std::pair<Vec3, double>> normals_;
     std::vector<int> ringMark_, seenMark_; // per vertex: stamps of the latest ring and neighbourhood
     int mark_ = 0, seen_ = 0;
     int interior_ = 0;

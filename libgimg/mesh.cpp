@@ -8,26 +8,25 @@ namespace gimg {
 Halfedges::Halfedges(const std::vector<Triangle>& faces, int vertexCount)
     : tail_(3 * faces.size()), twin_(3 * faces.size(), -1), outgoing_(static_cast<size_t>(vertexCount), -1)
 {
-    struct Key
-    {
-        uint64_t edge;
-        int h;
-    };
-    std::vector<Key> keys(tail_.size());
+    std::vector<int> first(static_cast<size_t>(vertexCount) + 1, 0), leaving(tail_.size());
     for (size_t f = 0; f < faces.size(); ++f)
-        for (int k = 0; k < 3; ++k) tail_[3 * f + k] = faces[f][k];
+        for (int k = 0; k < 3; ++k) {
+            tail_[3 * f + k] = faces[f][k];
+            ++first[faces[f][k] + 1];
+        }
+    for (int v = 0; v < vertexCount; ++v) first[v + 1] += first[v];
+    std::vector<int> end(first.begin(), first.end() - 1);
+    for (int h = 0; h < count(); ++h) leaving[end[tail(h)]++] = h;
+    const auto valence = [&](int v) { return end[v] - first[v]; };
     for (int h = 0; h < count(); ++h) {
-        const int low = std::min(tail(h), head(h)), high = std::max(tail(h), head(h));
-        keys[h] = {static_cast<uint64_t>(low) << 32 | static_cast<uint32_t>(high), h};
-    }
-    std::sort(keys.begin(), keys.end(), [](const Key& a, const Key& b) {
-        return a.edge != b.edge ? a.edge < b.edge : a.h < b.h;
-    });
-    for (size_t i = 0; i + 1 < keys.size(); ++i) {
-        if (keys[i].edge != keys[i + 1].edge) continue;
-        twin_[keys[i].h] = keys[i + 1].h;
-        twin_[keys[i + 1].h] = keys[i].h;
-        ++i;
+        // Where fewer halfedges leave: else the hub of a wheel would be gone through from every spoke.
+        if (valence(head(h)) > valence(tail(h))) continue;
+        for (int i = first[head(h)]; i < end[head(h)]; ++i) {
+            if (head(leaving[i]) != tail(h)) continue;
+            twin_[h] = leaving[i];
+            twin_[leaving[i]] = h;
+            break;
+        }
     }
     for (int h = 0; h < count(); ++h)
         if (outgoing_[tail(h)] < 0 || onBoundary(h)) outgoing_[tail(h)] = h;

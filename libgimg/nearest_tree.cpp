@@ -64,13 +64,19 @@ double squaredDistanceToTriangle(const Vec3& q, const Vec3& a, const Vec3& b, co
     const Vec3 ab = b - a, ac = c - a, bc = c - b;
     const Vec3 aq = q - a, bq = q - b;
     const Vec3 n = ab.cross(ac);
-    if (hasNormal(n, ab, ac) && ab.cross(aq).dot(n) >= 0 && bc.cross(bq).dot(n) >= 0 &&
-        aq.cross(ac).dot(n) >= 0) {
+    const bool flat = !hasNormal(n, ab, ac);
+    const bool beyondAb = flat || ab.cross(aq).dot(n) < 0, beyondBc = flat || bc.cross(bq).dot(n) < 0,
+               beyondAc = flat || aq.cross(ac).dot(n) < 0;
+    if (!beyondAb && !beyondBc && !beyondAc) {
         const double h = aq.dot(n);
         return h * h / n.squaredNorm();
     }
-    return std::min({squaredDistanceToSegment(q, a, b), squaredDistanceToSegment(q, b, c),
-                     squaredDistanceToSegment(q, a, c)});
+    // The nearest point of a convex polygon lies on an edge that separates it from q.
+    double nearest = std::numeric_limits<double>::infinity();
+    if (beyondAb) nearest = squaredDistanceToSegment(q, a, b);
+    if (beyondBc) nearest = std::min(nearest, squaredDistanceToSegment(q, b, c));
+    if (beyondAc) nearest = std::min(nearest, squaredDistanceToSegment(q, a, c));
+    return nearest;
 }
 
 UnitFrame::UnitFrame(const Mesh& mesh)

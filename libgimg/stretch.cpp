@@ -46,7 +46,8 @@ public:
     {
         double energy = energyAt(st_);
         if (unknowns_ == 0) return energy;
-        solver_.cholmod().print = 0; // a failed factorization is handled, not reported
+        solver_.cholmod().final_ll = 1; // a negative pivot is a failure
+        solver_.cholmod().print = 0;    // a failed factorization is handled, not reported
         solver_.analyzePattern(hessian_);
         for (int iteration = 0; iteration < options.maxIterations; ++iteration) {
             assemble();
@@ -223,7 +224,7 @@ private:
     SparseMatrix hessian_;                   // lower triangle
     Eigen::VectorXd gradient_;
     std::vector<double> scratch_;
-    Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> solver_;
+    Eigen::CholmodDecomposition<SparseMatrix, Eigen::Lower> solver_; // supernodal where matrices are large
 };
 
 } // namespace

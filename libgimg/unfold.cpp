@@ -75,10 +75,18 @@ private:
         if (tips.vertices.empty() || reached.energyWith <= kFarMore * tips.energy) return alongCut(reached);
         // Energies do not decide: the star's seam is the shorter one, the cut's layout can still be improved.
         const OneSolverThread oneThread; // each
-        std::optional<Result<Unfolded>> star, cut;
-        tbb::parallel_invoke([&] { star = octahedral(tips); }, [&] { cut = alongCut(reached); });
-        if (!*star || !*cut) return std::move(*star ? *star : *cut);
-        return std::move(quality(**star) > quality(**cut) ? *star : *cut);
+        struct Tried
+        {
+            std::optional<Result<Unfolded>> unfolded;
+            double quality = 0;
+        } star, cut;
+        const auto judge = [this](Tried& tried, Result<Unfolded> unfolded) {
+            if (unfolded) tried.quality = quality(*unfolded);
+            tried.unfolded = std::move(unfolded);
+        };
+        tbb::parallel_invoke([&] { judge(star, octahedral(tips)); }, [&] { judge(cut, alongCut(reached)); });
+        if (!*star.unfolded || !*cut.unfolded) return std::move(*(*star.unfolded ? star : cut).unfolded);
+        return std::move(*(star.quality > cut.quality ? star : cut).unfolded);
     }
 
     Result<Unfolded> octahedral(const StarTips& tips)

@@ -32,7 +32,8 @@ struct UnfoldOptions : BorderOptions
 /// Called with the stage, "cut" or "parameterize", and the fraction of it that is done.
 using UnfoldProgress = std::function<void(const char* stage, double fraction)>;
 
-/// How good an unfolding is; more is better. One without functions goes by quarticStretchEnergy.
+/// How good an unfolding is; more is better. One without functions goes by quarticStretchEnergy. They may be
+/// called from two threads at a time.
 struct UnfoldJudge
 {
     std::function<double(const Unfolded&)> coded; ///< dB of a small file
