@@ -121,6 +121,7 @@ public:
             if (!mesh) return mesh.error();
             EncodeOptions options;
             options.grid = row.grid;
+            options.effort = 6; // refits cost most of the time, and would even out what a change does
             Result<MeshEncoder> encoder = MeshEncoder::prepare(*mesh, options);
             if (!encoder) return Error{encoder.error().kind, row.mesh + ": " + encoder.error().message};
             encoder_.emplace(std::move(*encoder));

@@ -35,6 +35,30 @@ inline unsigned activityClass(std::uint64_t sum, unsigned cap)
     return value < cap ? value : cap;
 }
 
+/// The same for the caps in use, from a table.
+struct ActivityTable
+{
+    static constexpr unsigned kSize = 3072; // where class 23 begins
+    std::uint8_t value[kSize + 1];
+
+    constexpr ActivityTable() : value()
+    {
+        for (std::uint32_t sum = 0; sum <= kSize; ++sum) {
+            unsigned octave = 0;
+            while (sum >> (octave + 1) != 0) ++octave;
+            value[sum] = static_cast<std::uint8_t>(sum < 2 ? sum : 2 * octave + (sum >> (octave - 1) & 1u));
+        }
+    }
+};
+inline constexpr ActivityTable kActivity{};
+
+template <unsigned Cap> unsigned quickClass(std::uint64_t sum)
+{
+    static_assert(Cap >= 2 && Cap <= 23);
+    constexpr std::uint64_t kFirst = (std::uint64_t{2} + Cap % 2) << (Cap / 2 - 1); // sum of class Cap
+    return kActivity.value[sum < kFirst ? sum : kFirst];
+}
+
 inline std::uint64_t magnitudeOf(std::int32_t value)
 {
     return static_cast<std::uint64_t>(value < 0 ? -std::int64_t{value} : std::int64_t{value});

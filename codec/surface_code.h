@@ -82,7 +82,7 @@ void codeBlocks(Coder& coder, SurfaceModels& models, const SurfaceWork& work, co
             unsigned before = 0;
             for (unsigned d = 0; d < kDirections; ++d) {
                 const unsigned around = blocks.around(bi, bj, d);
-                const unsigned b = activityClass(below[d], 13), r = activityClass(ring[d], 13);
+                const unsigned b = quickClass<13>(below[d]), r = quickClass<13>(ring[d]);
                 BitModel* const mixed[3] = {&models.blockByLevel[d][before][level.index][around],
                                             &models.blockByParents[d][before][around][b],
                                             &models.blockByRing[d][before][b < 9 ? b : 9][r]};

@@ -44,13 +44,18 @@ inline std::uint64_t sizeAt(const std::int32_t* q, std::ptrdiff_t offset) { retu
 /// A sign as 0, 1 or 2.
 inline unsigned third(std::int64_t value) { return static_cast<unsigned>(signOf(value) + 1); }
 
+/// What a detail is coded with. Its sign's part is worked out only where there is one.
 struct DetailContext
 {
     BitModel* magnitude[kMagnitudeModels];
     MixWeights<kMagnitudeModels>*byActivity, *byPlace;
-    BitModel* sign[kSignModels];
-    MixWeights<kSignModels>* signWeights;
     ExpGolombModels<kDetailPrefixes>* larger;
+
+    SurfaceModels* models;
+    const std::int32_t *own, *parent; ///< places of its component; parent: nullptr at the coarsest level
+    std::ptrdiff_t row;
+    unsigned orientation, direction, bent;
+    bool bendsBack;
 };
 
 inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbourhood& around,
@@ -66,23 +71,15 @@ inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbou
     const std::uint64_t near = 2 * (west + north) + diagonals + farther;
 
     std::uint64_t siblings = 0;
-    std::int64_t siblingSign = 0;
-    if (orientation == Vertical) {
+    if (orientation == Vertical)
         siblings = sizeAt(q, -1 - row) + sizeAt(q, 1 - row) + sizeAt(q, row - 1) + sizeAt(q, row + 1);
-    } else if (orientation == Diagonal) {
+    else if (orientation == Diagonal)
         siblings = sizeAt(q, -row) + sizeAt(q, row) + sizeAt(q, -1) + sizeAt(q, 1);
-    }
-    siblingSign = orientation == Vertical   ? q[-1 - row] - std::int64_t{q[1 - row]} - q[row - 1] + q[row + 1]
-                  : orientation == Diagonal ? std::int64_t{q[-row]} + q[row] + q[-1] + q[1]
-                                            : 0;
 
     std::uint64_t parent = 0, parentNear = 0;
-    std::int32_t parentSign = 0;
-    if (around.parent[component] != nullptr) {
-        const std::int32_t* p = around.parent[component];
+    if (const std::int32_t* p = around.parent[component]; p != nullptr) {
         const auto up = static_cast<std::ptrdiff_t>(around.parentPitch);
         parent = sizeAt(p, 0);
-        parentSign = *p;
         parentNear = sizeAt(p, -2) + sizeAt(p, 2) + sizeAt(p, -2 * up) + sizeAt(p, 2 * up);
     }
     std::uint64_t others = 0;
@@ -93,30 +90,45 @@ inline DetailContext contextOfDetail(SurfaceModels& models, const DetailNeighbou
             others += (sizeAt(around.near[c], -2) + sizeAt(around.near[c], -2 * row) + 1) / 2;
     }
     const double size = bend < 0 ? -bend : bend;
-    const unsigned bent = activityClass(size < 16384.0 ? static_cast<std::uint64_t>(size * 4) : 65536, 13);
+    const unsigned bent = quickClass<13>(size < 16384.0 ? static_cast<std::uint64_t>(size * 4) : 65536);
 
-    const unsigned a = activityClass(near, 17);
-    const unsigned p = activityClass(2 * parent + parentNear, 9), s = activityClass(siblings, 11);
-    const unsigned w = activityClass(west, 7), n = activityClass(north, 7), d = activityClass(diagonals, 7);
-    const unsigned all = activityClass(2 * near + 3 * others + 2 * parent + parentNear + 2 * siblings, 23);
-    DetailContext c;
-    c.magnitude[0] = models.eachNear[w][n][d][direction];
-    c.magnitude[1] = models.everything[all][component];
-    c.magnitude[2] = models.bent[bent][a < 7 ? a : 7][direction];
-    c.magnitude[3] = models.family[p][s][orientation][direction];
-    c.byActivity = models.byActivity[all][direction];
-    c.byPlace = models.byPlace[level][orientation][direction];
-    c.larger = &models.larger[a];
+    const unsigned a = quickClass<17>(near);
+    const unsigned p = quickClass<9>(2 * parent + parentNear), s = quickClass<11>(siblings);
+    const unsigned w = quickClass<7>(west), n = quickClass<7>(north), d = quickClass<7>(diagonals);
+    const unsigned all = quickClass<23>(2 * near + 3 * others + 2 * parent + parentNear + 2 * siblings);
+    return {{models.eachNear[w][n][d][direction], models.everything[all][component],
+             models.bent[bent][a < 7 ? a : 7][direction], models.family[p][s][orientation][direction]},
+            models.byActivity[all][direction],
+            models.byPlace[level][orientation][direction],
+            &models.larger[a],
+            &models,
+            q,
+            around.parent[component],
+            row,
+            orientation,
+            direction,
+            bent,
+            bend < 0};
+}
 
-    c.sign[0] = &models.signNear[orientation][third(q[-2])][third(q[-2 * row])][third(q[-2 * row - 2])]
-                                [third(q[-2 * row + 2])][direction];
-    c.sign[1] =
-        &models.signFamily[orientation][third(parentSign)][third(siblingSign)][third(q[-2])][direction];
-    c.sign[2] = &models.signBent[orientation][2 * (bent < 7 ? bent : 7) + (bend < 0 ? 1u : 0u)][direction];
-    c.sign[3] =
-        &models.signParentNear[orientation][third(parentSign)][third(q[-4])][third(q[-4 * row])][direction];
-    c.signWeights = &models.signWeights[orientation][direction];
-    return c;
+template <class Coder> bool codeSurfaceSign(Coder& coder, const DetailContext& context, bool negative)
+{
+    const std::int32_t* q = context.own;
+    const std::ptrdiff_t row = context.row;
+    const unsigned o = context.orientation, d = context.direction;
+    const std::int64_t siblings = o == Vertical
+                                      ? q[-1 - row] - std::int64_t{q[1 - row]} - q[row - 1] + q[row + 1]
+                                  : o == Diagonal ? std::int64_t{q[-row]} + q[row] + q[-1] + q[1]
+                                                  : 0;
+    const unsigned parent = third(context.parent == nullptr ? 0 : *context.parent);
+    const unsigned west = third(q[-2]), bent = context.bent < 7 ? context.bent : 7;
+    SurfaceModels& models = *context.models;
+    BitModel* const mixed[kSignModels] = {
+        &models.signNear[o][west][third(q[-2 * row])][third(q[-2 * row - 2])][third(q[-2 * row + 2])][d],
+        &models.signFamily[o][parent][third(siblings)][west][d],
+        &models.signBent[o][2 * bent + (context.bendsBack ? 1u : 0u)][d],
+        &models.signParentNear[o][parent][third(q[-4])][third(q[-4 * row])][d]};
+    return codeMixed(coder, mixed, models.signWeights[o][d], negative);
 }
 
 template <class Coder>
@@ -127,9 +139,7 @@ std::int32_t codeSurfaceDetail(Coder& coder, const DetailContext& context, std::
         for (unsigned k = 0; k < kMagnitudeModels; ++k) models[k] = context.magnitude[k] + step;
         return codeMixed(coder, models, context.byActivity[step], context.byPlace[step], bit);
     };
-    const auto isNegative = [&](bool bit) {
-        return codeMixed(coder, context.sign, *context.signWeights, bit);
-    };
+    const auto isNegative = [&](bool bit) { return codeSurfaceSign(coder, context, bit); };
     return codeSigned<kMagnitudeBits>(coder, *context.larger, isAbove, isNegative, value);
 }
 

@@ -6,6 +6,8 @@
 #include "prepared.h"
 #include "stopwatch.h"
 
+#include <tbb/parallel_invoke.h>
+
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
@@ -209,14 +211,14 @@ Result<EncodedMesh> MeshEncoder::encode(const EncodeGoal& goal) const
 Result<EncodedMesh> MeshEncoder::encodeAtBestGrid(const EncodeGoal& goal) const
 {
     int grid = std::max(kSmallestGrid, prepared_->report.lowest);
-    Result<EncodedMesh> best = encodeAt(grid, goal, true);
+    Result<EncodedMesh> best = encodeAt(grid, goal, true, 0);
     while (grid < kLargestGrid) {
         grid = 2 * grid - 1;
-        Result<EncodedMesh> finer = encodeAt(grid, goal, true);
+        Result<EncodedMesh> finer = encodeAt(grid, goal, true, 0);
         if (best && (!finer || finer->psnr < best->psnr + prepared_->effort.gridWorth)) break;
         best = std::move(finer);
     }
-    return best;
+    return best && prepared_->effort.refits > 0 ? encodeAt(best->grid, goal, true) : std::move(best);
 }
 
 // Near the most that a grid can hold, decibels are bought dearly: the quantisation has to make up for the
@@ -253,11 +255,12 @@ Result<EncodedMesh> MeshEncoder::encodeAtAmpleGrid(const EncodeGoal& goal) const
 
 // Codes the samples as they have slid. None where they cannot be coded for the goal: that is no loss.
 Result<std::optional<CodedFile>> MeshEncoder::Prepared::codeSlid(const GridEncoders::Slide& slide,
-                                                                 const EncodeGoal& goal) const
+                                                                 const EncodeGoal& goal,
+                                                                 const EncodeProgress& told) const
 {
     const Result<codec::Encoder> encoder = slide.finished();
     if (!encoder) return encoder.error();
-    Result<CodedFile> slid = codeFor(goal, Precision::File, *encoder, measure, progress);
+    Result<CodedFile> slid = codeFor(goal, Precision::File, *encoder, measure, told);
     return slid ? std::optional(std::move(*slid)) : std::nullopt;
 }
 
@@ -273,7 +276,7 @@ Result<CodedFile> MeshEncoder::Prepared::codeOnceSlid(const codec::Encoder& stil
     if (!unslid) return unslid;
     if (const Status moved = slide.move(stepToMeet(goal, *unslid), effort.slides); !moved)
         return moved.error();
-    Result<std::optional<CodedFile>> slid = codeSlid(slide, goal);
+    Result<std::optional<CodedFile>> slid = codeSlid(slide, goal, progress);
     if (!slid) return slid.error();
     if (!exact) {
         const auto size = static_cast<double>(unslid->bytes.size());
@@ -287,7 +290,7 @@ Result<CodedFile> MeshEncoder::Prepared::codeOnceSlid(const codec::Encoder& stil
 
 // What the decoder makes of the best file is where the next round begins.
 Result<CodedFile> MeshEncoder::Prepared::codeSliding(const GridEncoders::Sampled& sampled,
-                                                     const EncodeGoal& goal) const
+                                                     const EncodeGoal& goal, int refits) const
 {
     if (goal.coding != LossyCoding::Surface || effort.slides == 0)
         return codeFor(goal, Precision::File, sampled.encoder, measure, progress);
@@ -295,15 +298,22 @@ Result<CodedFile> MeshEncoder::Prepared::codeSliding(const GridEncoders::Sampled
     if (!slide) return slide.error();
     Result<CodedFile> best = codeOnceSlid(sampled.encoder, *slide, goal);
     if (!best) return best;
-    for (int round = 0; round < effort.refits && slide->mayRefit(); ++round) {
+    for (int round = 0; round < refits && slide->mayRefit(); ++round) {
         const Result<DecodedImages> images = decodeImages(best->bytes);
         if (!images) return images.error();
-        if (const Status fitted = slide->refit(images->geometry, measure); !fitted) return fitted.error();
-        for (const int slides : {0, effort.slides}) { // sharp edges fare better without
-            if (const Status moved = slide->move(best->step, slides); !moved) return moved.error();
-            Result<std::optional<CodedFile>> coded = codeSlid(*slide, goal);
-            if (!coded) return coded.error();
-            if (*coded && isBetter(**coded, *best, goal.target)) best = std::move(**coded);
+        if (const Status fitted = slide->refit(images->geometry); !fitted) return fitted.error();
+        const GridEncoders::Slide refitted = *slide; // sharp edges fare better without sliding
+        std::optional<Result<std::optional<CodedFile>>> coded[2];
+        tbb::parallel_invoke([&] { coded[0] = codeSlid(refitted, goal, {}); },
+                             [&] {
+                                 if (const Status moved = slide->move(best->step, effort.slides); !moved)
+                                     coded[1] = moved.error();
+                                 else
+                                     coded[1] = codeSlid(*slide, goal, progress);
+                             });
+        for (auto& made : coded) {
+            if (!*made) return made->error();
+            if (**made && isBetter(***made, *best, goal.target)) best = std::move(***made);
         }
     }
     return best;
@@ -311,11 +321,16 @@ Result<CodedFile> MeshEncoder::Prepared::codeSliding(const GridEncoders::Sampled
 
 Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal, bool lossy) const
 {
+    return encodeAt(grid, goal, lossy, prepared_->effort.refits);
+}
+
+Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal, bool lossy, int refits) const
+{
     Stopwatch watch;
     const auto sampled = prepared_->encoders->at(grid, lossy, prepared_->measure);
     if (!sampled) return sampled.error();
     watch.lap();
-    Result<CodedFile> coded = lossy ? prepared_->codeSliding(**sampled, goal)
+    Result<CodedFile> coded = lossy ? prepared_->codeSliding(**sampled, goal, refits)
                                     : codeRaw(goal.target, (*sampled)->encoder, prepared_->measure);
     if (!coded) return coded.error();
 

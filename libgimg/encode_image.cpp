@@ -8,11 +8,6 @@
 namespace gimg {
 namespace {
 
-Mesh meshOf(const GluedGrid& grid, const FloatImage& image)
-{
-    return {grid.positions(image.samples), grid.faces(image)};
-}
-
 // Area-weighted normals of the grid's triangles, bilinear between samples.
 FloatImage normalsOf(const Mesh& mesh, const GluedGrid& grid, int n)
 {

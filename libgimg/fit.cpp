@@ -1,6 +1,6 @@
 #include "gimg/fit.h"
 
-#include "grid_surface.h"
+#include "fit_rounds.h"
 #include "mesh_check.h"
 
 #include <tbb/info.h>
@@ -21,18 +21,26 @@ Result<double> psnrOf(const GluedGrid& grid, const FloatImage& image, const Surf
     return distance->psnr();
 }
 
-FloatImage fitted(const Mesh& mesh, const FloatImage& image, const GluedGrid& grid, const FitOptions& options)
+NearestTree treeWithNormals(const Mesh& mesh, const UnitFrame& frame)
 {
-    const UnitFrame frame(mesh);
     NearestTree tree(frame.inside(mesh), mesh.faces);
     tree.makeNormals();
-    SurfacePull pull(std::move(tree), pullSamplesFor(image.width * image.height));
-    GridSurface surface(grid, frame, image);
-    for (int round = 0; round < options.rounds; ++round) surface.fit(pull, options.smoothing);
-    return surface.image();
+    return tree;
 }
 
 } // namespace
+
+FitRounds::FitRounds(const Mesh& mesh, int pixels)
+    : frame_(mesh), pull_(treeWithNormals(mesh, frame_), pullSamplesFor(pixels))
+{
+}
+
+FloatImage FitRounds::run(const GluedGrid& grid, const FloatImage& image, int rounds, double smoothing)
+{
+    GridSurface surface(grid, frame_, image);
+    for (int round = 0; round < rounds; ++round) surface.fit(pull_, smoothing);
+    return surface.image();
+}
 
 Result<FittedGeometry> fitGeometry(const Mesh& mesh, const SurfaceMeasure& measure, const FloatImage& image,
                                    const GridSeam& seam, const FitOptions& options)
@@ -49,7 +57,10 @@ try {
 
     const int cores = tbb::info::default_concurrency();
     tbb::task_arena arena(options.threads > 0 ? std::min(options.threads, cores) : cores);
-    FloatImage moved = arena.execute([&] { return fitted(mesh, image, *grid, options); });
+    FloatImage moved = arena.execute([&] {
+        return FitRounds(mesh, image.width * image.height)
+            .run(*grid, image, options.rounds, options.smoothing);
+    });
     const Result<double> after = psnrOf(*grid, moved, measure);
     if (!after || !(*after > *before)) return FittedGeometry{image, *before, *before};
     return FittedGeometry{std::move(moved), *before, *after};

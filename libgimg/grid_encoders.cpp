@@ -4,6 +4,8 @@
 #include "gimg/sample.h"
 #include "stopwatch.h"
 
+#include <exception>
+
 namespace gimg {
 
 Status GridEncoders::fit(bool lossy, const SurfaceMeasure& measure, FloatImage& geometry, FloatImage& normals,
@@ -87,21 +89,24 @@ bool GridEncoders::Slide::mayRefit() const
     return encoders_.source_.refits && sampled_.geometry.width <= EncodeOptions::kLargestFit;
 }
 
-Status GridEncoders::Slide::refit(const FloatImage& decoded, const SurfaceMeasure& measure)
-{
+Status GridEncoders::Slide::refit(const FloatImage& decoded)
+try {
+    constexpr int kRounds = 2;
+    constexpr double kSmoothing = 0; // decoded samples lie where they cost little: they stay there
     const GridSource& source = encoders_.source_;
-    FitOptions options;
-    options.rounds = 2;
-    options.smoothing = 0; // decoded samples lie where they cost little: they stay there
-    Result<FittedGeometry> fitted = fitGeometry(*source.surface, measure, decoded, source.seam, options);
-    if (!fitted) return fitted.error();
-    Result<codec::Encoder> encoder = encoderOf(source.seam, fitted->image, {});
+    const Result<GluedGrid> grid = gridOf(decoded, source.seam);
+    if (!grid) return grid.error();
+    if (!rounds_) rounds_ = std::make_shared<FitRounds>(*source.surface, decoded.width * decoded.height);
+    const FloatImage fitted = rounds_->run(*grid, decoded, kRounds, kSmoothing);
+    Result<codec::Encoder> encoder = encoderOf(source.seam, fitted, {});
     if (!encoder) return encoder.error();
-    Result<SampleSlide> slide = SampleSlide::of(encoders_.slideSurface_, source.seam, fitted->image);
+    Result<SampleSlide> slide = SampleSlide::of(encoders_.slideSurface_, source.seam, fitted);
     if (!slide) return slide.error();
     encoder_ = std::move(*encoder);
     slide_ = std::move(*slide);
     return Done{};
+} catch (const std::exception& failure) {
+    return Error{ErrorKind::BadArgument, failure.what()};
 }
 
 Result<codec::Encoder> GridEncoders::Slide::finished() const

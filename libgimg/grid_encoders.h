@@ -1,6 +1,7 @@
 #pragma once
 
 #include "coded_file.h"
+#include "fit_rounds.h"
 #include "slide.h"
 
 #include "gimg/encode.h"
@@ -44,18 +45,17 @@ public:
     /// @param lossy  what the samples are for: it makes a difference to those along sharp edges
     Result<std::shared_ptr<const Sampled>> at(int grid, bool lossy, const SurfaceMeasure& measure);
 
-    /// Samples on their way along the surface.
+    /// Samples on their way along the surface. Copies go their own ways, but only one of them may refit at a
+    /// time.
     class Slide
     {
     public:
-        const codec::Encoder& encoder() const { return encoder_; }
-
         /// Codes at this step and moves the targets, as often as told.
         Status move(float step, int rounds);
 
         /// Fits the surface of a decoded image anew, and takes its samples: where samples have slid to they
         /// want another height above the mesh.
-        Status refit(const FloatImage& decoded, const SurfaceMeasure& measure);
+        Status refit(const FloatImage& decoded);
         bool mayRefit() const;
 
         /// The encoder of the samples where they are, with the normals there.
@@ -71,6 +71,7 @@ public:
         const Sampled& sampled_;
         codec::Encoder encoder_;
         SampleSlide slide_;
+        std::shared_ptr<FitRounds> rounds_; // made when needed
     };
 
     /// @param sampled  of this object

@@ -137,6 +137,8 @@ struct NearestTree::Query
 
     bool visit(int face, float& queryRadius)
     {
+        // Most triangles of a leaf are farther, which their boxes show at a fraction of the cost.
+        if (tree.distance2ToBox(q, face) > (ties ? tieDistance2 : best.distance2) * (1 + 1e-9)) return false;
         const double distance2 = tree.distance2ToFace(q, face);
         if (ties && distance2 <= tieDistance2) ties->push_back({face, distance2});
         if (distance2 >= best.distance2) {
@@ -188,6 +190,14 @@ double NearestTree::distance2ToFace(const Vec3& q, int face) const
 {
     const Triangle& t = faces_[face];
     return squaredDistanceToTriangle(q, positions_[t[0]], positions_[t[1]], positions_[t[2]]);
+}
+
+double NearestTree::distance2ToBox(const Vec3& q, int face) const
+{
+    const Triangle& t = faces_[face];
+    const Vec3 &a = positions_[t[0]], &b = positions_[t[1]], &c = positions_[t[2]];
+    const Vec3 low = a.cwiseMin(b).cwiseMin(c), high = a.cwiseMax(b).cwiseMax(c);
+    return (low - q).cwiseMax(q - high).cwiseMax(0.0).squaredNorm();
 }
 
 Vec3 NearestTree::nearestOnFace(const Vec3& q, int face) const

@@ -72,6 +72,7 @@ private:
     struct Query;
 
     double distance2ToFace(const Vec3& q, int face) const;
+    double distance2ToBox(const Vec3& q, int face) const; ///< of the face: not above that to the face
     double onePoint() const;
     double angleAt(const Vec3& p, int face) const;
     void search(Query& query) const;

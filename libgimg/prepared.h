@@ -23,10 +23,12 @@ struct MeshEncoder::Prepared
     EncodeProgress progress;
     int threads;
 
-    Result<CodedFile> codeSliding(const GridEncoders::Sampled& sampled, const EncodeGoal& goal) const;
+    Result<CodedFile> codeSliding(const GridEncoders::Sampled& sampled, const EncodeGoal& goal,
+                                  int refits) const;
     Result<CodedFile> codeOnceSlid(const codec::Encoder& still, GridEncoders::Slide& slide,
                                    const EncodeGoal& goal) const;
-    Result<std::optional<CodedFile>> codeSlid(const GridEncoders::Slide& slide, const EncodeGoal& goal) const;
+    Result<std::optional<CodedFile>> codeSlid(const GridEncoders::Slide& slide, const EncodeGoal& goal,
+                                              const EncodeProgress& told) const;
 };
 
 /// As many threads as asked for while it lives.

@@ -54,9 +54,9 @@ struct EncodeOptions : EncodeGoal
     static constexpr int kLargestFit = 1025; ///< larger grids are not fitted: it would take gigabytes
 
     /// Samples a side, 2^j + 1. 0 chooses: for a number of bytes the grid grows from 129 to 513 as long as a
-    /// finer one is worth half a decibel (see docs/effort.md), for a PSNR or largest error it is the smallest
-    /// whose samples hold 6 dB more, half as much (1025 where 513 does not reach it), and raw grids have 257.
-    /// It is never smaller than what the cut needs.
+    /// finer one is worth a quarter of a decibel (see docs/effort.md), for a PSNR or largest error it is the
+    /// smallest whose samples hold 6 dB more, half as much (1025 where 513 does not reach it), and raw grids
+    /// have 257. It is never smaller than what the cut needs.
     int grid = 0;
     int lowest = 0; ///< lowest level of detail; 0 chooses
     SquareLayout layout = SquareLayout::Auto;
@@ -68,7 +68,7 @@ struct EncodeOptions : EncodeGoal
     bool fit = true; ///< move the samples to where the triangles between them fit the mesh, see fitGeometry
     bool features = false; ///< lay grid lines along sharp edges, see followFeatures; needs `fit`.
                            ///< For lossy files without FeatureOptions::ease
-    int effort = 6;        ///< 1 to 9: time for quality, see docs/effort.md
+    int effort = 7;        ///< 1 to 9: time for quality, see docs/effort.md
     /// What PSNR and errors are against, while the encoder is prepared; null: the mesh itself.
     const Mesh* reference = nullptr;
 };
@@ -149,6 +149,7 @@ public:
 
 private:
     Result<EncodedMesh> encodeAt(int grid, const EncodeGoal& goal, bool lossy) const;
+    Result<EncodedMesh> encodeAt(int grid, const EncodeGoal& goal, bool lossy, int refits) const;
     Result<EncodedMesh> encodeAtBestGrid(const EncodeGoal& goal) const;
     Result<EncodedMesh> encodeAtAmpleGrid(const EncodeGoal& goal) const;
     struct Prepared;
