@@ -42,6 +42,9 @@ public:
         if (const Status found = closeIn(); !found) return found.error();
         if (!isMet() && !atCoarsest_ && (!best_ || quality(*best_, target_) - asked_ < kHopeless))
             if (const Status found = scan(); !found) return found.error();
+        if (!best_)
+            return Error{ErrorKind::TargetUnreachable,
+                         "no file was found that reaches " + describeQuality(asked_, target_)};
         if (!isMet() && target_ == EncodeTarget::Psnr && window_ < kLooseWindow)
             return Error{ErrorKind::TargetUnreachable,
                          "no file is within 0.2 dB of " + describeQuality(asked_, target_) +

@@ -26,7 +26,9 @@ protected:
     {
         Result<MeshFile> read = readMesh(bunnyPath());
         ASSERT_TRUE(read.ok()) << read.error().message << " (corpus/fetch bunny brings it)";
-        Result<MeshEncoder> prepared = MeshEncoder::prepare(read->mesh, {});
+        EncodeOptions options;
+        options.grid = 257;
+        Result<MeshEncoder> prepared = MeshEncoder::prepare(read->mesh, options);
         ASSERT_TRUE(prepared.ok()) << prepared.error().message;
         encoder_ = new MeshEncoder(std::move(*prepared));
     }
