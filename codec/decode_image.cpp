@@ -251,8 +251,8 @@ ReadStatus readImageHeader(format::ByteSpan content, ImageKind image, ImageHeade
     format::Reader in(content);
     const std::uint8_t kind = in.u8();
     if (in.failed()) return ReadStatus::Corrupt;
-    const unsigned exponent = kind & 0x0Fu, coding = kind >> 4 & 0x03u;
-    if (kind >> 6 != 0) return ReadStatus::Unsupported;
+    const unsigned exponent = kind & 0x0Fu, coding = kind >> 4 & 0x07u;
+    if (kind >> 7 != 0 || coding > GIM_CODING_SURFACE) return ReadStatus::Unsupported;
     if (coding == GIM_CODING_SURFACE && image != ImageKind::Geometry) return ReadStatus::Unsupported;
     if (exponent == 0 || exponent > kLargestExponent) return ReadStatus::Unsupported;
     header->grid = (1u << exponent) + 1;
