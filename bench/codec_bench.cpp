@@ -56,7 +56,7 @@ const Stages* stages()
         codec::ImageHeader header;
         const bool sound =
             images.ok() &&
-            format::readContents({file->data(), file->size()}, &contents) == format::ReadStatus::Ok &&
+            format::readContents({file->data(), file->size()}, false, &contents) == format::ReadStatus::Ok &&
             codec::readImageHeader(contents.geometry.content, codec::ImageKind::Geometry, &header) ==
                 format::ReadStatus::Ok;
         if (!sound) return std::nullopt;

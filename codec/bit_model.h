@@ -19,35 +19,39 @@ inline unsigned log2Floor(std::uint32_t value)
 #endif
 }
 
-/// An adaptive estimate of the probability that a bit is 0: the mean of a quick and a slow one.
-/// Both begin quicker than they end, so that a model seen a few times is already of use.
+/// How far an estimate moves towards the bit that it was followed by, in 2^-15: 1 / (n + 1.6) after n bits,
+/// so that a model seen a few times is already of use.
+struct RateTable
+{
+    static constexpr unsigned kSlowest = 62;
+    std::uint16_t value[kSlowest + 1];
+
+    constexpr RateTable() : value()
+    {
+        for (unsigned n = 0; n <= kSlowest; ++n)
+            value[n] = static_cast<std::uint16_t>(327680u / (10 * n + 16));
+    }
+};
+inline constexpr RateTable kRates{};
+
+/// An adaptive estimate of the probability that a bit is 0.
 struct BitModel
 {
-    std::uint16_t quick = 1u << 15;
-    std::uint16_t slow = 1u << 15;
-    std::uint8_t seen = 0;
+    std::uint16_t estimate = 1u << 15; ///< in 2^-16
+    std::uint16_t seen = 0;
 
-    static constexpr unsigned kQuickShift = 4;
-    static constexpr unsigned kSlowShift = 7;
-    static constexpr unsigned kSeenCap = 126; // log2Floor(126 + 2) = kSlowShift
+    /// Estimates stay this far from 0 and 2^16 - 1.
+    static constexpr int kLeast = 64;
 
-    /// In [19, 32748]: the shifts keep the estimates away from 0 and 2^16.
-    std::uint32_t zero() const { return (std::uint32_t{quick} + slow) >> 2; }
+    /// In [kLeast / 2, 2^15 - 1 - kLeast / 2].
+    std::uint32_t zero() const { return estimate >> 1; }
 
     void update(bool bit)
     {
-        const unsigned shift = log2Floor(seen + 2u);
-        quick = moved(quick, shift < kQuickShift ? shift : kQuickShift, bit);
-        slow = moved(slow, shift, bit);
-        if (seen < kSeenCap) ++seen;
-    }
-
-private:
-    static std::uint16_t moved(std::uint16_t estimate, unsigned shift, bool bit)
-    {
-        const std::uint32_t value = estimate;
-        return static_cast<std::uint16_t>(bit ? value - (value >> shift)
-                                              : value + ((65536u - value) >> shift));
+        const int away = (bit ? kLeast : 65535 - kLeast) - static_cast<int>(estimate);
+        estimate =
+            static_cast<std::uint16_t>(static_cast<int>(estimate) + ((away * kRates.value[seen]) >> 15));
+        if (seen < RateTable::kSlowest) ++seen;
     }
 };
 

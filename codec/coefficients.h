@@ -271,6 +271,7 @@ void codeCoarse(Coder& coder, ExpGolombModels<kCoarseBits>& models, QuantizedIma
             } else {
                 value = expected;
             }
+            if (coder.hasEnded()) value = expected;
             if (value > kMaxCoarse || value < -kMaxCoarse) return coder.fail();
         }
     }

@@ -1,4 +1,5 @@
 #include "arena.h"
+#include "detail_passes.h"
 #include "fuse.h"
 #include "image_header.h"
 #include "range_decoder.h"
@@ -74,54 +75,95 @@ ReadStatus decodeWavelet(const ImageHeader& header, const std::uint32_t* classes
 // The memory a surface is decoded in.
 struct SurfaceMemory
 {
+    SurfaceWork work;
+    DetailLevels levels;
+    std::uint32_t* mates;
+    DetailModels* models;
+
+    template <class Take> void layOut(std::uint32_t grid, Take&& take)
+    {
+        work.layOut(grid, take);
+        levels.layOut(grid, take);
+        take(mates, borderSize(grid));
+        take(models, 1);
+    }
+
     static std::uint64_t size(std::uint32_t grid)
     {
-        return 2 * kComponents *
-                   (Arena::sizeOf<double>(samplesOf(grid)) + Arena::sizeOf<std::int32_t>(codedSize(grid))) +
-               kComponents * Arena::sizeOf<double>(coarseSamplesOf(grid)) +
-               Arena::sizeOf<double>(2 * std::size_t{borderSize(grid)}) +
-               Arena::sizeOf<std::uint32_t>(borderSize(grid)) +
-               Arena::sizeOf<std::uint8_t>(BlockMap::memory(grid)) + Arena::sizeOf<SurfaceModels>(1);
+        std::uint64_t sum = 0;
+        SurfaceMemory memory;
+        memory.layOut(grid, [&](auto*& piece, std::size_t count) {
+            piece = nullptr;
+            sum += Arena::sizeOf<std::remove_reference_t<decltype(*piece)>>(count);
+        });
+        return sum;
     }
 
     bool take(Arena& arena, std::uint32_t grid)
     {
         bool all = true;
-        const auto need = [&](auto*& piece, std::size_t count) {
+        layOut(grid, [&](auto*& piece, std::size_t count) {
             piece = arena.take<std::remove_reference_t<decltype(*piece)>>(count);
-            all = all && piece != nullptr;
-        };
-        for (unsigned c = 0; c < kComponents; ++c) {
-            need(work.surface[c], samplesOf(grid));
-            need(work.detail[c], samplesOf(grid));
-            need(work.coarse[c], coarseSamplesOf(grid));
-            need(work.coded[c], codedSize(grid));
-            need(work.parents[c], codedSize(grid));
-        }
-        need(work.border, 2 * std::size_t{borderSize(grid)});
-        need(mates, borderSize(grid));
-        std::uint8_t* blocks = nullptr;
-        need(blocks, BlockMap::memory(grid));
-        work.blocks = BlockMap(blocks);
-        need(models, 1);
+            if (piece == nullptr)
+                all = false;
+            else
+                std::memset(static_cast<void*>(piece), 0, count * sizeof *piece);
+        });
         return all;
     }
-
-    SurfaceWork work;
-    std::uint32_t* mates;
-    SurfaceModels* models;
 };
 
-struct PlainDetails
+/// Details that were coded, as vectors.
+class CodedDetails
 {
-    void begin(const SurfaceLevel&, const double* const (&)[kComponents]) const {}
-    bool isEmpty() const { return false; }
-    bool isFilled(std::uint32_t, std::uint32_t, unsigned) const { return false; }
-    std::int32_t operator()(RangeDecoder& decoder, const DetailContext& context, unsigned, std::size_t,
-                            const Frame&) const
+public:
+    CodedDetails(const SurfaceParameters& parameters, const DetailLevels& levels)
+        : parameters_(parameters), levels_(levels)
     {
-        return codeSurfaceDetail(decoder, context, 0);
     }
+
+    bool begin(const SurfaceLevel& level, const double* const (&)[kComponents])
+    {
+        here_ = &levels_.level[level.index];
+        // The middle of what the bits that are missing may hold.
+        middle_ = 0.5 * static_cast<double>((1u << here_->missing) - 1);
+        return here_->isFilled;
+    }
+
+    bool isWanted(std::uint32_t bi, std::uint32_t bj) const
+    {
+        return here_->blocks.isFilled(bi, bj, 0) || here_->blocks.isFilled(bi, bj, 1);
+    }
+
+    Vector operator()(const SurfaceLevel& level, const double* const (&prediction)[kComponents], unsigned,
+                      std::uint32_t i, std::uint32_t j, const SharedDetail&) const
+    {
+        const std::size_t index = codedIndex(level.size, i, j);
+        const std::int32_t q[kComponents] = {here_->q[0][index], here_->q[1][index], here_->q[2][index]};
+        Vector detail = {0, 0, 0};
+        if (q[0] == 0 && q[1] == 0 && q[2] == 0) return detail;
+        const Frame frame = frameAt(prediction, level, parameters_, i, j);
+        for (unsigned c = 0; c < kComponents; ++c) {
+            if (q[c] == 0) continue;
+            const double steps = q[c] < 0 ? q[c] - middle_ : q[c] + middle_;
+            detail = detail + (steps * frame.step[c]) * frame.axis[c];
+        }
+        return detail;
+    }
+
+private:
+    const SurfaceParameters& parameters_;
+    const DetailLevels& levels_;
+    const DetailLevel* here_ = nullptr;
+    double middle_ = 0;
+};
+
+/// What is asked of encoders.
+struct NoDetails
+{
+    bool isEmpty(unsigned, unsigned) const { return false; }
+    bool isFilled(unsigned, std::uint32_t, std::uint32_t, unsigned, unsigned) const { return false; }
+    std::int32_t operator()(unsigned, unsigned, std::size_t) const { return 0; }
 };
 
 ReadStatus decodeSurface(const ImageHeader& header, const SeamView& seam, const std::uint32_t* classes,
@@ -130,12 +172,15 @@ ReadStatus decodeSurface(const ImageHeader& header, const SeamView& seam, const 
     SurfaceMemory memory;
     if (!memory.take(arena, header.grid)) return ReadStatus::Misuse;
     const GluedBorder border(seam, header.grid, classes, memory.mates);
-    new (memory.models) SurfaceModels();
-    RangeDecoder decoder(header.samples);
+    new (memory.models) DetailModels();
+    RangeDecoder decoder(header.samples, header.isPrefix);
     QuantizedImage coarse;
-    const PlainDetails pick;
-    codeSurface(decoder, *memory.models, surfaceParameters(header), border, coarse, memory.work, pick);
-    if (!decoder.finished()) return ReadStatus::Corrupt;
+    codeSurface(decoder, *memory.models, border, coarse, memory.levels, 0, NoDetails());
+    if (!header.isPrefix && !decoder.finished()) return ReadStatus::Corrupt;
+    if (header.isPrefix && decoder.failed() && !decoder.hasEnded()) return ReadStatus::Corrupt;
+    const SurfaceParameters parameters = surfaceParameters(header);
+    CodedDetails details(parameters, memory.levels);
+    buildSurface(parameters, border, coarse.coarse, memory.work, details);
     const std::size_t samples = samplesOf(header.grid);
     for (unsigned c = 0; c < kComponents; ++c)
         for (std::size_t k = 0; k < samples; ++k) {

@@ -289,13 +289,16 @@ Outcome<Encoder> Encoder::prepare(const Source& source)
     return Encoder(source);
 }
 
-Outcome<Encoder> Encoder::slid(float step, int rounds, const Retarget& retarget) const
+Outcome<Encoder> Encoder::slid(float step, int rounds, double octaves, const Retarget& retarget) const
 {
     if (const std::string fault = stepFault(surface_, step, "the step"); !fault.empty())
         return EncodeError{EncodeError::Kind::BadSettings, fault, 0};
     Encoder moved = *this;
     for (int round = 0; round < rounds; ++round) {
-        const CodedSurface coded = surfaceEncoder_->encode(moved.surface_, parametersOf(step));
+        // The last round is at the step itself.
+        const double early = static_cast<double>(rounds - 1 - round) / rounds;
+        const auto coarser = static_cast<float>(static_cast<double>(step) * std::exp2(octaves * early));
+        const CodedSurface coded = surfaceEncoder_->encode(moved.surface_, parametersOf(coarser), false);
         retarget(coded.decoded, moved.xyz_);
         moved.surface_ = surfaceEncoder_->transform(moved.xyz_);
         step = std::max(step, smallestStep(moved.surface_));

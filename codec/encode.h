@@ -72,7 +72,8 @@ public:
     /// The encoder of samples that have slid: `rounds` times the surface is coded at the step and its targets
     /// are moved. What slides along the surface need not be coded, so that a file of the same size comes
     /// nearer.
-    Outcome<Encoder> slid(float step, int rounds, const Retarget& retarget) const;
+    /// @param octaves  how much coarser the first round's step is; the more, the better for prefixes of the file
+    Outcome<Encoder> slid(float step, int rounds, double octaves, const Retarget& retarget) const;
 
     /// The best file of at most `target` bytes; at most max(1 %, 24 bytes) smaller.
     /// @param coding  of the geometry, surface or wavelet

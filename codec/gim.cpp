@@ -60,6 +60,7 @@ struct File
 };
 
 constexpr std::size_t kSeamFixedBytes = 1;
+constexpr std::uint32_t kKnownFlags = GIM_NO_FUSE | GIM_NO_DIFFUSE | GIM_PREFIX;
 
 // Seam, its scratch, and what of the rest is largest.
 std::uint64_t workspaceOf(const File& file)
@@ -79,14 +80,21 @@ std::uint64_t workspaceOf(const File& file)
     return seam + most + Arena::kAlignment;
 }
 
-ReadStatus openFile(const void* bytes, std::size_t size, const gim_limits* limits, File* file)
+/// @param allowPrefix  a file that is cut short will do, if its geometry can be decoded as far as it goes
+ReadStatus openFile(const void* bytes, std::size_t size, const gim_limits* limits, bool allowPrefix,
+                    File* file)
 {
     if ((bytes == nullptr && size > 0) || !readLimits(limits, &file->limits)) return ReadStatus::Misuse;
-    ReadStatus status = readContents({static_cast<const std::uint8_t*>(bytes), size}, &file->contents);
+    ReadStatus status =
+        readContents({static_cast<const std::uint8_t*>(bytes), size}, allowPrefix, &file->contents);
     if (status != ReadStatus::Ok) return status;
 
     status = readImageHeader(file->contents.geometry.content, ImageKind::Geometry, &file->geometry);
+    const std::size_t missing = file->contents.geometry.missing;
+    if (status == ReadStatus::Corrupt && missing > 0) return ReadStatus::MoreInput;
     if (status != ReadStatus::Ok) return status;
+    if (missing > 0 && file->geometry.coding != GIM_CODING_SURFACE) return ReadStatus::MoreInput;
+    file->geometry.isPrefix = missing > 0;
     if (file->contents.normals.type != 0) {
         status = readImageHeader(file->contents.normals.content, ImageKind::Normals, &file->normals);
         if (status != ReadStatus::Ok) return status;
@@ -144,7 +152,7 @@ ReadStatus decode(const File& file, const ImageHeader& header, std::uint32_t fla
                   std::size_t workspaceSize, float* out)
 {
     if (workspace == nullptr || out == nullptr || workspaceSize < file.workspace) return ReadStatus::Misuse;
-    if ((flags & ~(GIM_NO_FUSE | GIM_NO_DIFFUSE)) != 0) return ReadStatus::Misuse;
+    if ((flags & ~kKnownFlags) != 0) return ReadStatus::Misuse;
     Arena arena(workspace, workspaceSize);
     SeamView seam;
     const std::uint32_t* classes = nullptr;
@@ -164,7 +172,7 @@ struct Level
 
 ReadStatus openLevel(const File& file, std::uint32_t flags, std::uint32_t level, Arena& arena, Level* out)
 {
-    if ((flags & ~(GIM_NO_FUSE | GIM_NO_DIFFUSE)) != 0 || level >= file.levels) return ReadStatus::Misuse;
+    if ((flags & ~kKnownFlags) != 0 || level >= file.levels) return ReadStatus::Misuse;
     out->stride = 1u << level;
     out->grid = (file.geometry.grid - 1) / out->stride + 1;
     SeamView seam;
@@ -202,8 +210,10 @@ const char* gim_status_text(gim_status status)
 gim_status gim_probe(const void* bytes, size_t size, const gim_limits* limits, gim_info* info)
 {
     if (info == nullptr || info->size < sizeof(gim_info)) return GIM_MISUSE;
+    *info = {};
+    info->size = sizeof *info;
     File file;
-    const ReadStatus status = openFile(bytes, size, limits, &file);
+    const ReadStatus status = openFile(bytes, size, limits, true, &file);
     if (status != ReadStatus::Ok) return toPublic(status);
     const Contents& contents = file.contents;
     info->version = gimg::format::kVersion;
@@ -223,7 +233,8 @@ gim_status gim_probe(const void* bytes, size_t size, const gim_limits* limits, g
     info->container_bytes =
         size - info->seam_bytes - info->geometry_bytes - info->normal_bytes - info->other_bytes;
     info->workspace = file.workspace;
-    return GIM_OK;
+    info->missing_bytes = contents.geometry.missing;
+    return contents.isPrefix ? GIM_MORE_INPUT : GIM_OK;
 }
 
 size_t gim_workspace_size(const gim_info* info)
@@ -257,7 +268,7 @@ gim_status gim_read_seam(const void* bytes, size_t size, const gim_limits* limit
     if (workspace == nullptr || out == nullptr || out->size < sizeof(gim_seam)) return GIM_MISUSE;
     if (sides == nullptr && capacity != 0) return GIM_MISUSE;
     File file;
-    ReadStatus status = openFile(bytes, size, limits, &file);
+    ReadStatus status = openFile(bytes, size, limits, true, &file);
     if (status != ReadStatus::Ok) return toPublic(status);
     Arena arena(workspace, workspace_size);
     SeamView seam;
@@ -281,7 +292,7 @@ gim_status gim_decode_geometry(const void* bytes, size_t size, const gim_limits*
                                void* workspace, size_t workspace_size, float* xyz)
 {
     File file;
-    const ReadStatus status = openFile(bytes, size, limits, &file);
+    const ReadStatus status = openFile(bytes, size, limits, (flags & GIM_PREFIX) != 0, &file);
     if (status != ReadStatus::Ok) return toPublic(status);
     return toPublic(decode(file, file.geometry, flags, workspace, workspace_size, xyz));
 }
@@ -290,7 +301,7 @@ gim_status gim_decode_normals(const void* bytes, size_t size, const gim_limits* 
                               void* workspace, size_t workspace_size, float* normals)
 {
     File file;
-    ReadStatus status = openFile(bytes, size, limits, &file);
+    ReadStatus status = openFile(bytes, size, limits, (flags & GIM_PREFIX) != 0, &file);
     if (status != ReadStatus::Ok) return toPublic(status);
     if (file.normals.grid == 0) return GIM_MISUSE;
     status = decode(file, file.normals, flags, workspace, workspace_size, normals);
@@ -305,7 +316,7 @@ gim_status gim_mesh_size(const void* bytes, size_t size, const gim_limits* limit
     if (workspace == nullptr || counts == nullptr || counts->size < sizeof(gim_mesh_counts))
         return GIM_MISUSE;
     File file;
-    ReadStatus status = openFile(bytes, size, limits, &file);
+    ReadStatus status = openFile(bytes, size, limits, (flags & GIM_PREFIX) != 0, &file);
     if (status != ReadStatus::Ok) return toPublic(status);
     Arena arena(workspace, workspace_size);
     Level open;
@@ -323,7 +334,7 @@ gim_status gim_build_mesh(const void* bytes, size_t size, const gim_limits* limi
 {
     if (workspace == nullptr || (xyz == nullptr && triangles != nullptr)) return GIM_MISUSE;
     File file;
-    ReadStatus status = openFile(bytes, size, limits, &file);
+    ReadStatus status = openFile(bytes, size, limits, (flags & GIM_PREFIX) != 0, &file);
     if (status != ReadStatus::Ok) return toPublic(status);
     if (workspace_size < file.workspace) return GIM_MISUSE;
     Arena arena(workspace, workspace_size);

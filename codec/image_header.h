@@ -29,6 +29,7 @@ struct ImageHeader
     float least[kComponents] = {}; ///< raw12: what integer 0 stands for
     format::ByteSpan samples;      ///< the coded samples
     std::size_t fixedBytes = 0;
+    bool isPrefix = false; ///< `samples` are cut short
 };
 
 /// Reads and checks the fixed fields of a geometry or normal chunk.

@@ -9,11 +9,6 @@ namespace gimg::codec {
 // decoder computes the same.
 
 constexpr int kStretchLimit = 2047;
-/// Speed at which weights follow: larger is slower.
-constexpr int kMixShift = 15;
-/// Weights stay within 16 of 0, whatever is coded.
-constexpr std::int32_t kMixLimit = 16 << 16;
-
 /// 2^15 / (1 + exp(-x)) at x = -8, -7.5 .. 8.
 constexpr std::int32_t kLogistic[33] = {11,    18,    30,    49,    81,    133,   219,   360,   589,
                                         961,   1554,  2486,  3906,  5978,  8813,  12371, 16384, 20397,
@@ -48,32 +43,53 @@ struct StretchTable
 };
 inline constexpr StretchTable kStretch{};
 
-constexpr int clampStretch(std::int64_t sum)
-{
-    return sum > kStretchLimit    ? kStretchLimit
-           : sum < -kStretchLimit ? -kStretchLimit
-                                  : static_cast<int>(sum);
-}
-
-/// Weights of `Count` estimates, in units of 2^-16.
+/// Weights of `Count` estimates, in units of 2^-12. Those that are left over of the lanes stay 0.
 template <unsigned Count> struct MixWeights
 {
-    std::int32_t weight[Count];
+    static constexpr unsigned kLanes = 8;
+    static_assert(Count <= kLanes);
+    static constexpr int kUnitBits = 12;
+    /// Weights stay within 8 of 0, whatever is coded.
+    static constexpr std::int16_t kMost = 32600;
+    static constexpr std::int16_t kStart = static_cast<std::int16_t>((1 << kUnitBits) * 13 / 10 / Count);
+
+    alignas(16) std::int16_t weight[kLanes];
 
     constexpr MixWeights() : weight()
     {
-        for (std::int32_t& w : weight) w = kStart;
+        for (unsigned k = 0; k < Count; ++k) weight[k] = kStart;
     }
 
-    static constexpr std::int32_t kStart = static_cast<std::int32_t>(65536 * 13 / 10 / Count);
-
-    void learn(const int (&stretched)[Count], int error)
+    /// At most 2^29.
+    int times(const std::int16_t (&stretched)[kLanes]) const
     {
-        for (unsigned k = 0; k < Count; ++k) {
-            const std::int32_t moved =
-                weight[k] + ((stretched[k] * error + (1 << (kMixShift - 1))) >> kMixShift);
-            weight[k] = moved > kMixLimit ? kMixLimit : moved < -kMixLimit ? -kMixLimit : moved;
+        int sum = 0;
+        for (unsigned k = 0; k < kLanes; ++k) sum += static_cast<int>(weight[k]) * stretched[k];
+        return sum;
+    }
+
+    /// Moves each weight by stretched * error / 2^19, rounded; 16-bit lanes throughout.
+    /// @param error  in 2^-15
+    void learn(const std::int16_t (&stretched)[kLanes], int error)
+    {
+        const auto part = static_cast<std::int16_t>(error >> 3);
+        for (unsigned k = 0; k < kLanes; ++k) {
+            const auto twice = static_cast<std::int16_t>(2 * stretched[k]);
+            const auto moves = static_cast<std::int16_t>((twice * part) >> 16);
+            const auto moved = static_cast<std::int16_t>(weight[k] + ((moves + 1) >> 1));
+            const std::int16_t low = moved < -kMost ? static_cast<std::int16_t>(-kMost) : moved;
+            weight[k] = low > kMost ? kMost : low;
         }
+    }
+};
+
+template <unsigned Count> struct Stretched
+{
+    alignas(16) std::int16_t value[MixWeights<Count>::kLanes] = {};
+
+    explicit Stretched(BitModel* const (&models)[Count])
+    {
+        for (unsigned k = 0; k < Count; ++k) value[k] = kStretch.value[models[k]->zero() >> 3];
     }
 };
 
@@ -82,44 +98,29 @@ template <unsigned Count> struct MixWeights
 template <unsigned Count, class Coder>
 bool codeMixed(Coder& coder, BitModel* const (&models)[Count], MixWeights<Count>& weights, bool bit)
 {
-    int stretched[Count];
-    std::int64_t sum = 0;
-    for (unsigned k = 0; k < Count; ++k) {
-        stretched[k] = kStretch.value[models[k]->zero() >> 3];
-        sum += std::int64_t{weights.weight[k]} * stretched[k];
-    }
-    const std::uint32_t zero = squash(static_cast<int>(sum >> 16));
+    const Stretched<Count> stretched(models);
+    const std::uint32_t zero = squash(weights.times(stretched.value) >> MixWeights<Count>::kUnitBits);
     const bool one = coder.code(zero, bit);
     if (!Coder::kAdapts) return one;
-    const int error = (one ? 0 : 1 << kProbabilityBits) - static_cast<int>(zero);
-    for (unsigned k = 0; k < Count; ++k) {
-        const std::int32_t moved =
-            weights.weight[k] + ((stretched[k] * error + (1 << (kMixShift - 1))) >> kMixShift);
-        weights.weight[k] = moved > kMixLimit ? kMixLimit : moved < -kMixLimit ? -kMixLimit : moved;
-        models[k]->update(one);
-    }
+    weights.learn(stretched.value, (one ? 0 : 1 << kProbabilityBits) - static_cast<int>(zero));
+    for (unsigned k = 0; k < Count; ++k) models[k]->update(one);
     return one;
 }
 
-/// The same with two sets of weights, chosen by different contexts, whose results are averaged before
-/// squash(). Each set learns from its own error.
+/// The same with two sets of weights, chosen by different contexts: each estimate counts with the mean of its
+/// two.
 template <unsigned Count, class Coder>
 bool codeMixed(Coder& coder, BitModel* const (&models)[Count], MixWeights<Count>& first,
                MixWeights<Count>& second, bool bit)
 {
-    int stretched[Count];
-    std::int64_t sums[2] = {};
-    for (unsigned k = 0; k < Count; ++k) {
-        stretched[k] = kStretch.value[models[k]->zero() >> 3];
-        sums[0] += std::int64_t{first.weight[k]} * stretched[k];
-        sums[1] += std::int64_t{second.weight[k]} * stretched[k];
-    }
-    const int parts[2] = {clampStretch(sums[0] >> 16), clampStretch(sums[1] >> 16)};
-    const bool one = coder.code(squash((parts[0] + parts[1]) >> 1), bit);
+    const Stretched<Count> stretched(models);
+    const int sum = first.times(stretched.value) + second.times(stretched.value);
+    const std::uint32_t zero = squash(sum >> (MixWeights<Count>::kUnitBits + 1));
+    const bool one = coder.code(zero, bit);
     if (!Coder::kAdapts) return one;
-    const int target = one ? 0 : 1 << kProbabilityBits;
-    first.learn(stretched, target - static_cast<int>(squash(parts[0])));
-    second.learn(stretched, target - static_cast<int>(squash(parts[1])));
+    const int error = (one ? 0 : 1 << kProbabilityBits) - static_cast<int>(zero);
+    first.learn(stretched.value, error);
+    second.learn(stretched.value, error);
     for (unsigned k = 0; k < Count; ++k) models[k]->update(one);
     return one;
 }

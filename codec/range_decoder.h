@@ -15,7 +15,9 @@ public:
     /// The encoder leaves out up to this many zero bytes at the end.
     static constexpr std::size_t kMaxOverrun = 4;
 
-    explicit RangeDecoder(format::ByteSpan bytes) : bytes_(bytes)
+    /// @param isPrefix  more bytes would follow, but are not there
+    explicit RangeDecoder(format::ByteSpan bytes, bool isPrefix = false)
+        : bytes_(bytes), end_(isPrefix ? bytes.size : bytes.size + kMaxOverrun)
     {
         for (int k = 0; k < 4; ++k) code_ = code_ << 8 | nextByte();
     }
@@ -60,6 +62,9 @@ public:
     void fail() { failed_ = true; }
     bool failed() const { return failed_ || at_ > bytes_.size + kMaxOverrun; }
 
+    /// What was read last hangs on bytes that are not there.
+    bool hasEnded() const { return at_ > end_; }
+
     /// At the end: every byte was needed.
     bool finished() const { return !failed() && at_ >= bytes_.size; }
 
@@ -79,6 +84,7 @@ private:
     }
 
     format::ByteSpan bytes_;
+    std::size_t end_;
     std::size_t at_ = 0;
     std::uint32_t range_ = 0xFFFFFFFFu;
     std::uint32_t code_ = 0;

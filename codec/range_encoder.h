@@ -46,6 +46,8 @@ public:
     void fail() { failed_ = true; }
     bool failed() const { return failed_; }
 
+    static constexpr bool hasEnded() { return false; }
+
     /// About how many bytes finish() will return.
     std::size_t bytesSoFar() const { return bytes_.size() + pending_; }
 

@@ -17,16 +17,19 @@ public:
     /// Bytes for levels of up to n x n samples.
     static constexpr std::size_t memory(std::uint32_t n)
     {
-        return (std::size_t{side(n)} + 2) * (std::size_t{side(n)} + 1);
+        return (std::size_t{side(n)} + 2) * (std::size_t{side(n)} + 2);
     }
 
-    explicit BlockMap(std::uint8_t* flags = nullptr) : flags_(flags) {}
-
-    void begin(std::uint32_t n)
+    /// The block of a row or column.
+    static std::uint32_t blockOf(std::uint32_t k, std::uint32_t side)
     {
-        side_ = side(n);
-        std::memset(flags_, 0, memory(n));
+        return k / kBlock < side ? k / kBlock : side - 1;
     }
+
+    BlockMap() = default;
+    /// @param flags  memory(n) zeros
+    BlockMap(std::uint8_t* flags, std::uint32_t n) : flags_(flags), side_(side(n)) {}
+
     std::uint32_t side() const { return side_; }
     /// @param direction  0: the normal, 1: the tangents
     bool isFilled(std::uint32_t bi, std::uint32_t bj, unsigned direction) const
@@ -38,13 +41,14 @@ public:
         flags_[at(bi, bj)] |= static_cast<std::uint8_t>(1u << direction);
     }
 
-    /// 0 to 6: how much is filled beside and above.
+    /// 0 to 8: how much is filled around.
     unsigned around(std::uint32_t bi, std::uint32_t bj, unsigned direction) const
     {
         const std::uint8_t* here = flags_ + at(bi, bj);
-        const std::uint8_t* above = here - (side_ + 2);
+        const std::uint8_t *above = here - (side_ + 2), *below = here + (side_ + 2);
         const auto flag = [direction](std::uint8_t flags) { return flags >> direction & 1u; };
-        return 2u * (flag(here[-1]) + flag(above[0])) + flag(above[-1]) + flag(above[1]);
+        return 2u * (flag(here[-1]) + flag(above[0])) + flag(above[-1]) + flag(above[1]) + flag(here[1]) +
+               flag(below[0]);
     }
 
 private:
@@ -53,7 +57,7 @@ private:
         return (std::size_t{bj} + 1) * (std::size_t{side_} + 2) + bi + 1;
     }
 
-    std::uint8_t* flags_;
+    std::uint8_t* flags_ = nullptr;
     std::uint32_t side_ = 0;
 };
 

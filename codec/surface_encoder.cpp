@@ -1,6 +1,7 @@
 #include "surface_encoder.h"
 
 #include "bit_counter.h"
+#include "detail_passes.h"
 #include "forward.h"
 #include "range_encoder.h"
 #include "surface_code.h"
@@ -18,94 +19,176 @@ constexpr double kWorthOfBit = 0.11;
 /// What a detail that is not 0 takes, in bits: that of one step, and what an octave adds.
 constexpr double kBitsOfDetail = 6, kBitsOfOctave = 2;
 
-struct EncoderMemory
+/// Zeros for what is laid out in the decoder's arena.
+class Memory
 {
-    explicit EncoderMemory(std::uint32_t grid)
+public:
+    template <class T> void operator()(T*& piece, std::size_t count)
     {
-        const std::size_t samples = std::size_t{grid} * grid,
-                          coarser = std::size_t{grid / 2 + 1} * (grid / 2 + 1);
-        for (unsigned c = 0; c < kComponents; ++c) {
-            work.surface[c] = numbers(samples);
-            work.detail[c] = numbers(samples);
-            work.coarse[c] = numbers(coarser);
-            work.coded[c] = integers(codedSize(grid));
-            work.parents[c] = integers(codedSize(grid));
-        }
-        work.border = numbers(2 * std::size_t{borderSize(grid)});
-        blocks_.resize(BlockMap::memory(grid));
-        work.blocks = BlockMap(blocks_.data());
+        static_assert(alignof(T) <= alignof(std::max_align_t));
+        pieces_.emplace_back(count * sizeof(T));
+        piece = reinterpret_cast<T*>(pieces_.back().data());
     }
 
-    SurfaceWork work;
-
 private:
-    double* numbers(std::size_t count) { return numbers_.emplace_back(count).data(); }
-    std::int32_t* integers(std::size_t count) { return integers_.emplace_back(count).data(); }
-
-    std::vector<std::vector<double>> numbers_;
-    std::vector<std::vector<std::int32_t>> integers_;
-    std::vector<std::uint8_t> blocks_;
+    std::vector<std::vector<std::byte>> pieces_;
 };
 
-/// Chooses and codes one detail after the other.
+/// About what a detail will cost, from those chosen before it in its own level and the coarser one.
+class DetailCost
+{
+public:
+    void begin(const DetailLevel& level, const DetailLevel* coarser)
+    {
+        level_ = &level;
+        coarser_ = coarser;
+    }
+
+    /// What of the place and the components chosen there tells most.
+    unsigned classOf(unsigned orientation, std::uint32_t i, std::uint32_t j,
+                     const std::int32_t (&here)[kComponents], unsigned component) const
+    {
+        const std::uint32_t n = level_->size, m = n / 2 + 1;
+        const auto row = static_cast<std::ptrdiff_t>(codedPitch(n));
+        const std::size_t index = codedIndex(n, i, j);
+        const auto at = [&](unsigned c, std::ptrdiff_t offset) {
+            return magnitudeOf(level_->q[c][static_cast<std::ptrdiff_t>(index) + offset]);
+        };
+        std::uint64_t sum = 4 * (at(component, -2) + at(component, -2 * row));
+        for (const std::ptrdiff_t offset : {-2 * row - 2, -2 * row + 2, std::ptrdiff_t{-4}, -4 * row})
+            sum += 2 * at(component, offset);
+        if (orientation == Vertical)
+            for (const std::ptrdiff_t offset : {-1 - row, 1 - row, row - 1, row + 1})
+                sum += 2 * at(component, offset);
+        if (orientation == Diagonal)
+            for (const std::ptrdiff_t offset : {-row, row, std::ptrdiff_t{-1}, std::ptrdiff_t{1}})
+                sum += 2 * at(component, offset);
+        if (coarser_ != nullptr) {
+            const std::int32_t* p =
+                coarser_->q[component] + codedIndex(m, i / 4 * 2 + i % 2, j / 4 * 2 + j % 2);
+            const auto up = 2 * static_cast<std::ptrdiff_t>(codedPitch(m));
+            sum += 2 * magnitudeOf(*p) + magnitudeOf(p[-2]) + magnitudeOf(p[2]) + magnitudeOf(p[-up]) +
+                   magnitudeOf(p[up]);
+        }
+        for (unsigned c = 0; c < kComponents; ++c)
+            sum += c < component   ? 6 * magnitudeOf(here[c])
+                   : c > component ? 3 * (at(c, -2) + at(c, -2 * row) + 1) / 2
+                                   : 0;
+        return quickClass<23>(sum);
+    }
+
+    /// @param coder  a BitCounter, or a BitLearner to remember what was chosen
+    template <class Coder>
+    void code(Coder& coder, unsigned classOfPlace, unsigned component, std::uint32_t magnitude)
+    {
+        BitModel* above = above_[classOfPlace][component];
+        for (unsigned k = 0; k < kSteps; ++k)
+            if (!coder.bit(above[k], magnitude > k)) {
+                if (k > 0) coder.raw(1, 0);
+                return;
+            }
+        // The sign, and an octave's two bits.
+        const unsigned octaves = log2Floor(magnitude - kSteps + 1);
+        coder.raw(2 + 2 * octaves, 0);
+    }
+
+private:
+    static constexpr unsigned kSteps = 4;
+    BitModel above_[24][kComponents][kSteps];
+    const DetailLevel *level_ = nullptr, *coarser_ = nullptr;
+};
+
+struct BitLearner
+{
+    bool bit(BitModel& model, bool one) const { return model.update(one), one; }
+    void raw(unsigned, std::uint32_t) const {}
+};
+
+/// Chooses one detail after the other, by what it costs and what it mends.
 class ThriftyDetails
 {
 public:
-    ThriftyDetails(const TransformedSurface& surface, const SurfaceParameters& parameters)
-        : surface_(surface), parameters_(parameters)
+    ThriftyDetails(const TransformedSurface& surface, const SurfaceParameters& parameters,
+                   DetailLevels& levels)
+        : surface_(surface), parameters_(parameters), levels_(levels)
     {
     }
 
-    void begin(const SurfaceLevel& level, const double* const (&prediction)[kComponents])
+    bool begin(const SurfaceLevel& level, const double* const (&prediction)[kComponents])
     {
         exact_ = &surface_.levels[level.index];
+        here_ = &levels_.level[level.index];
+        cost_.begin(*here_, level.index == 0 ? nullptr : &levels_.level[level.index - 1]);
         const std::uint32_t n = level.size;
         side_ = BlockMap::side(n);
         worth_.assign(std::size_t{2} * side_ * side_, 0);
-        for (unsigned orientation = 0; orientation < 3; ++orientation)
-            for (std::uint32_t j = firstRow(orientation); j < n; j += 2)
-                for (std::uint32_t i = firstColumn(orientation); i < n; i += 2) {
-                    if (!sharedDetail(level, orientation, i, j).isFirst) continue;
-                    const Frame frame = frameAt(prediction, level, parameters_, orientation, i, j);
-                    double* worths =
-                        &worth_[2 * (std::min(j / BlockMap::kBlock, side_ - 1) * std::size_t{side_} +
-                                     std::min(i / BlockMap::kBlock, side_ - 1))];
-                    for (unsigned c = 0; c < kComponents; ++c) {
-                        const double size = std::abs(exactIn(frame, c, j * std::size_t{n} + i));
-                        const double nearest = std::floor(size + 0.5);
-                        if (nearest == 0) continue;
-                        const double mended = size * size - (size - nearest) * (size - nearest);
-                        worths[c == 0 ? 0 : 1] += std::max(
-                            0.0, mended - kWorthOfBit * (kBitsOfDetail + kBitsOfOctave * std::log2(nearest)));
-                    }
+        visitDetails(
+            level.border, n, [](std::uint32_t, std::uint32_t) { return true; },
+            [&](unsigned, std::uint32_t i, std::uint32_t j, const SharedDetail&, std::uint32_t bi,
+                std::uint32_t bj) {
+                const Frame frame = frameAt(prediction, level, parameters_, i, j);
+                double* worths = &worth_[2 * (bj * std::size_t{side_} + bi)];
+                for (unsigned c = 0; c < kComponents; ++c) {
+                    const double size = std::abs(exactIn(frame, c, j * std::size_t{n} + i));
+                    const double nearest = std::floor(size + 0.5);
+                    if (nearest == 0) continue;
+                    const double mended = size * size - (size - nearest) * (size - nearest);
+                    worths[c == 0 ? 0 : 1] += std::max(
+                        0.0, mended - kWorthOfBit * (kBitsOfDetail + kBitsOfOctave * std::log2(nearest)));
                 }
+                return true;
+            });
+        here_->isFilled = std::any_of(worth_.begin(), worth_.end(), [](double worth) { return worth > 0; });
+        return here_->isFilled;
     }
 
-    bool isFilled(std::uint32_t bi, std::uint32_t bj, unsigned direction) const
+    bool isWanted(std::uint32_t bi, std::uint32_t bj) const
+    {
+        return isWorth(bi, bj, 0) || isWorth(bi, bj, 1);
+    }
+
+    Vector operator()(const SurfaceLevel& level, const double* const (&prediction)[kComponents],
+                      unsigned orientation, std::uint32_t i, std::uint32_t j, const SharedDetail& shared)
+    {
+        const std::uint32_t n = level.size;
+        const std::size_t index = codedIndex(n, i, j);
+        const std::uint32_t bi = BlockMap::blockOf(i, side_), bj = BlockMap::blockOf(j, side_);
+        const Frame frame = frameAt(prediction, level, parameters_, i, j);
+        std::int32_t here[kComponents] = {};
+        Vector detail = {0, 0, 0};
+        for (unsigned c = 0; c < kComponents; ++c) {
+            if (!isWorth(bi, bj, c == 0 ? 0 : 1)) continue;
+            const double exact = exactIn(frame, c, j * std::size_t{n} + i);
+            const double size = std::min(std::abs(exact), static_cast<double>(kLargestDetail));
+            const unsigned place = cost_.classOf(orientation, i, j, here, c);
+            const std::int32_t magnitude = thriftyMagnitude(size, kWorthOfBit, [&](std::int32_t candidate) {
+                BitCounter counter;
+                cost_.code(counter, place, c, static_cast<std::uint32_t>(candidate));
+                return counter.bits();
+            });
+            BitLearner learner;
+            cost_.code(learner, place, c, static_cast<std::uint32_t>(magnitude));
+            if (magnitude == 0) continue;
+            here[c] = exact < 0 ? -magnitude : magnitude;
+            here_->q[c][index] = here[c];
+            here_->blocks.fill(bi, bj, c == 0 ? 0 : 1);
+            detail = detail + (here[c] * frame.step[c]) * frame.axis[c];
+        }
+        if (shared.mate != GluedBorder::kNoMate) {
+            const GridPoint other = borderPoint(n, shared.mate);
+            for (unsigned c = 0; c < kComponents; ++c) here_->q[c][codedIndex(n, other.i, other.j)] = here[c];
+        }
+        return detail;
+    }
+
+private:
+    static constexpr std::int32_t kLargestDetail = (1 << kDetailBits) - 2;
+
+    bool isWorth(std::uint32_t bi, std::uint32_t bj, unsigned direction) const
     {
         return worth_[2 * (bj * std::size_t{side_} + bi) + direction] > 0;
     }
 
-    bool isEmpty() const
-    {
-        return std::none_of(worth_.begin(), worth_.end(), [](double worth) { return worth > 0; });
-    }
-
-    std::int32_t operator()(RangeEncoder& coder, const DetailContext& context, unsigned component,
-                            std::size_t index, const Frame& frame) const
-    {
-        const double exact = exactIn(frame, component, index);
-        const double size = std::min(std::abs(exact), static_cast<double>(kMaxDetail - 1));
-        const std::int32_t sign = exact < 0 ? -1 : 1;
-        const std::int32_t magnitude = thriftyMagnitude(size, kWorthOfBit, [&](std::int32_t candidate) {
-            BitCounter counter;
-            codeSurfaceDetail(counter, context, sign * candidate);
-            return counter.bits();
-        });
-        return codeSurfaceDetail(coder, context, sign * magnitude);
-    }
-
-private:
     // A detail's component, in steps.
     double exactIn(const Frame& frame, unsigned component, std::size_t index) const
     {
@@ -115,9 +198,66 @@ private:
 
     const TransformedSurface& surface_;
     const SurfaceParameters& parameters_;
+    DetailLevels& levels_;
     std::vector<double> worth_; // of the level's blocks
     std::uint32_t side_ = 0;
     const TransformedSurface::Level* exact_ = nullptr;
+    DetailLevel* here_ = nullptr;
+    DetailCost cost_;
+};
+
+/// Details that have been chosen, for codeSurface().
+class WholeDetails
+{
+public:
+    WholeDetails(const DetailLevels& levels, const GluedBorder& border) : levels_(levels)
+    {
+        for (unsigned l = 0; l < levels.count; ++l) {
+            const DetailLevel& level = levels.level[l];
+            const std::uint32_t n = level.size, side = BlockMap::side(n);
+            auto& tops = tops_.emplace_back(std::size_t{kDirections} * side * side, 0u);
+            visitDetails(
+                border.isGluedAt(n / 2 + 1) ? &border : nullptr, n,
+                [&](std::uint32_t bi, std::uint32_t bj) {
+                    return level.blocks.isFilled(bi, bj, 0) || level.blocks.isFilled(bi, bj, 1);
+                },
+                [&](unsigned, std::uint32_t i, std::uint32_t j, const SharedDetail&, std::uint32_t bi,
+                    std::uint32_t bj) {
+                    for (unsigned c = 0; c < kComponents; ++c) {
+                        std::uint32_t& top =
+                            tops[kDirections * (bj * std::size_t{side} + bi) + (c == 0 ? 0 : 1)];
+                        top |= static_cast<std::uint32_t>(magnitudeOf(level.q[c][codedIndex(n, i, j)]));
+                    }
+                    return true;
+                });
+            topOfLevel_.push_back(0);
+            for (const std::uint32_t top : tops) topOfLevel_.back() |= top;
+        }
+    }
+
+    /// Bits of the largest magnitude.
+    unsigned passes() const
+    {
+        std::uint32_t all = 0;
+        for (const std::uint32_t top : topOfLevel_) all |= top;
+        return all == 0 ? 0 : log2Floor(all) + 1;
+    }
+
+    bool isEmpty(unsigned l, unsigned pass) const { return topOfLevel_[l] >> pass == 0; }
+    bool isFilled(unsigned l, std::uint32_t bi, std::uint32_t bj, unsigned direction, unsigned pass) const
+    {
+        const std::size_t side = BlockMap::side(levels_.level[l].size);
+        return tops_[l][kDirections * (bj * side + bi) + direction] >> pass != 0;
+    }
+    std::int32_t operator()(unsigned l, unsigned component, std::size_t index) const
+    {
+        return levels_.level[l].q[component][index];
+    }
+
+private:
+    const DetailLevels& levels_;
+    std::vector<std::vector<std::uint32_t>> tops_; // bits of the magnitudes in a block
+    std::vector<std::uint32_t> topOfLevel_;
 };
 
 } // namespace
@@ -187,27 +327,38 @@ TransformedSurface SurfaceEncoder::transform(std::span<const float> samples) con
     return out;
 }
 
-CodedSurface SurfaceEncoder::encode(const TransformedSurface& surface,
-                                    const SurfaceParameters& parameters) const
+CodedSurface SurfaceEncoder::encode(const TransformedSurface& surface, const SurfaceParameters& parameters,
+                                    bool withPayload) const
 {
     std::vector<std::uint32_t> mates(classes_.size());
     const GluedBorder border(view(), grid_, classes_.data(), mates.data());
-    EncoderMemory memory(grid_);
+    Memory memory;
+    SurfaceWork work;
+    DetailLevels chosen;
+    work.layOut(grid_, memory);
+    chosen.layOut(grid_, memory);
     QuantizedImage coarse;
     for (unsigned c = 0; c < kComponents; ++c)
         for (unsigned k = 0; k < kCoarsest * kCoarsest; ++k)
             coarse.coarse[c][k] = std::llround(surface.coarse[c][k] / parameters.step);
-    const auto models = std::make_unique<SurfaceModels>();
-    RangeEncoder encoder;
-    ThriftyDetails pick(surface, parameters);
-    codeSurface(encoder, *models, parameters, border, coarse, memory.work, pick);
+    ThriftyDetails details(surface, parameters, chosen);
+    buildSurface(parameters, border, coarse.coarse, work, details);
 
-    CodedSurface out{encoder.finish(), {}};
+    CodedSurface out;
     const std::size_t count = std::size_t{grid_} * grid_;
     out.decoded.resize(kComponents * count);
     for (unsigned c = 0; c < kComponents; ++c)
         for (std::size_t k = 0; k < count; ++k)
-            out.decoded[kComponents * k + c] = static_cast<float>(memory.work.surface[c][k]);
+            out.decoded[kComponents * k + c] = static_cast<float>(work.surface[c][k]);
+    if (!withPayload) return out;
+
+    DetailLevels coded;
+    coded.layOut(grid_, memory);
+    const auto models = std::make_unique<DetailModels>();
+    const WholeDetails whole(chosen, border);
+    RangeEncoder encoder;
+    codeSurface(encoder, *models, border, coarse, coded, whole.passes(), whole);
+    out.payload = encoder.finish();
     return out;
 }
 
@@ -217,7 +368,7 @@ float smallestStep(const TransformedSurface& surface)
     double detail = 0;
     for (const TransformedSurface::Level& level : surface.levels)
         for (const double value : level.largest) detail = std::max(detail, value);
-    return smallestStep(8 * detail, surface.largest);
+    return smallestStep(8.0 * (kMaxDetail >> kDetailBits) * detail, surface.largest);
 }
 
 } // namespace gimg::codec

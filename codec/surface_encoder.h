@@ -43,7 +43,9 @@ public:
 
     /// Quantises and codes. Magnitudes are chosen by what they cost and what they mend.
     /// The step must not be below smallestStep().
-    CodedSurface encode(const TransformedSurface& surface, const SurfaceParameters& parameters) const;
+    /// @param withPayload  false: only what a decoder will make of it
+    CodedSurface encode(const TransformedSurface& surface, const SurfaceParameters& parameters,
+                        bool withPayload = true) const;
 
 private:
     SeamView view() const;

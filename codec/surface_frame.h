@@ -59,7 +59,6 @@ struct Frame
 {
     Vector axis[kComponents]; ///< normal and two tangents
     double step[kComponents];
-    double bend; ///< of the prediction along the band's direction, in normal steps
 };
 
 inline Vector sampleOf(const double* const (&planes)[kComponents], std::size_t at)
@@ -121,8 +120,7 @@ inline double meanCellArea(const double* const (&planes)[kComponents], std::uint
 }
 
 inline Frame frameAt(const double* const (&planes)[kComponents], const SurfaceLevel& level,
-                     const SurfaceParameters& parameters, unsigned orientation, std::uint32_t i,
-                     std::uint32_t j)
+                     const SurfaceParameters& parameters, std::uint32_t i, std::uint32_t j)
 {
     Frame frame;
     const Derivatives d = derivativesAt(planes, level, i, j);
@@ -166,12 +164,6 @@ inline Frame frameAt(const double* const (&planes)[kComponents], const SurfaceLe
                                      : flat > bent       ? std::sqrt(flat / bent)
                                                          : 1.0);
     frame.step[2] = frame.step[1];
-
-    const Vector second = orientation == Horizontal ? alongI
-                          : orientation == Vertical
-                              ? alongJ
-                              : pick(at + n + 1) + pick(at - n - 1) - (pick(at + n - 1) + pick(at - n + 1));
-    frame.bend = dot(second, frame.axis[0]) / frame.step[0];
     return frame;
 }
 

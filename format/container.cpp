@@ -79,16 +79,21 @@ ReadStatus ChunkWalk::next(Chunk* chunk)
     std::uint32_t length = 0;
     if (const ReadStatus status = readLength(in_, &length); status != ReadStatus::Ok) return status;
     const std::size_t offset = in_.offset();
+    if (in_.remaining() < std::uint64_t{length} + 4) {
+        const std::size_t rest = in_.remaining(), there = rest < length ? rest : length;
+        *chunk = {type, in_.span(there), offset, offset + rest - begin, length - there};
+        return ReadStatus::MoreInput;
+    }
     const ByteSpan content = in_.span(length);
     const std::size_t end = in_.offset();
     const std::uint32_t sum = in_.u32();
     if (in_.failed()) return ReadStatus::MoreInput;
     if (checksumDiffers(sum, {file_.data + begin, end - begin})) return ReadStatus::Corrupt;
-    *chunk = {type, content, offset, in_.offset() - begin};
+    *chunk = {type, content, offset, in_.offset() - begin, 0};
     return ReadStatus::Ok;
 }
 
-ReadStatus readContents(ByteSpan file, Contents* contents)
+ReadStatus readContents(ByteSpan file, bool allowPrefix, Contents* contents)
 {
     ChunkWalk walk(file);
     if (const ReadStatus status = walk.open(); status != ReadStatus::Ok) return status;
@@ -98,7 +103,17 @@ ReadStatus readContents(ByteSpan file, Contents* contents)
     bool unknownCritical = false;
     for (std::uint32_t k = 0; k < walk.count(); ++k) {
         Chunk chunk;
-        if (const ReadStatus status = walk.next(&chunk); status != ReadStatus::Ok) return status;
+        const ReadStatus status = walk.next(&chunk);
+        if (status != ReadStatus::Ok && !(status == ReadStatus::MoreInput && allowPrefix)) return status;
+        if (status == ReadStatus::MoreInput) {
+            contents->isPrefix = true;
+            if (contents->seam.type == 0) return status;
+            if (contents->geometry.type == 0) {
+                if (chunk.type != kGeometryChunk) return status;
+                contents->geometry = chunk;
+            }
+            return unknownCritical ? ReadStatus::Unsupported : ReadStatus::Ok;
+        }
         Chunk* known = nullptr;
         if (chunk.type == kSeamChunk) known = &contents->seam;
         if (chunk.type == kGeometryChunk) known = &contents->geometry;

@@ -27,6 +27,7 @@ struct Chunk
     ByteSpan content;
     std::size_t offset = 0; ///< of the content in the file
     std::size_t total = 0;  ///< bytes with header and checksum
+    std::size_t missing = 0; ///< bytes of the content that the file ends before
 };
 
 /// Walks a file's chunks in order.
@@ -38,6 +39,7 @@ public:
     /// Reads the file's header; must come first.
     ReadStatus open();
     /// The next chunk. Call it count() times.
+    /// MoreInput: the file ends within it; if that is in its content or checksum, the chunk holds what is there.
     ReadStatus next(Chunk* chunk);
     /// After the last chunk: nothing may follow it.
     ReadStatus close() const { return in_.remaining() == 0 ? ReadStatus::Ok : ReadStatus::Corrupt; }
@@ -56,10 +58,12 @@ struct Contents
     std::uint32_t chunks = 0;
     Chunk seam, geometry, normals; ///< type 0: absent
     std::uint64_t otherBytes = 0;  ///< contents of skipped chunks
+    bool isPrefix = false;         ///< the file is cut short
 };
 
 /// Walks the whole file: checks every checksum, finds the known chunks, refuses unknown critical ones.
-ReadStatus readContents(ByteSpan file, Contents* contents);
+/// @param allowPrefix  a file that ends within its geometry chunk, or after it, will do if the seam comes before
+ReadStatus readContents(ByteSpan file, bool allowPrefix, Contents* contents);
 
 std::uint32_t crc(ByteSpan bytes);
 

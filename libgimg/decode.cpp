@@ -36,7 +36,9 @@ Result<DecodedImages> decodeImages(std::span<const uint8_t> file, unsigned flags
     DecodedImages out{};
     out.info.size = sizeof out.info;
     gim_status status = gim_probe(file.data(), file.size(), nullptr, &out.info);
-    if (status != GIM_OK) return decoderError(status);
+    const bool isPrefix = status == GIM_MORE_INPUT && out.info.grid != 0 && (flags & GIM_PREFIX) != 0;
+    if (status != GIM_OK && !isPrefix) return decoderError(status);
+    out.isPrefix = isPrefix;
     std::vector<std::byte> workspace(gim_workspace_size(&out.info));
     out.geometry = emptyImage(out.info.grid);
     status = gim_decode_geometry(file.data(), file.size(), nullptr, flags, workspace.data(), workspace.size(),

@@ -176,7 +176,7 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     if (options.normals != 0) normals = sampleNormals(square, map, options.normals);
     if (!normals) return normals.error();
     out.normals = options.normals;
-    const Effort effort = Effort::of(options.effort);
+    const Effort effort = Effort::of(options);
     const auto shared = std::make_shared<const Unfolded>(std::move(*unfolded));
     GridSource source;
     source.surface = {shared, &shared->square.surface};
@@ -274,7 +274,7 @@ Result<CodedFile> MeshEncoder::Prepared::codeOnceSlid(const codec::Encoder& stil
     Result<CodedFile> unslid =
         codeFor(goal, exact ? Precision::File : Precision::Step, still, measure, progress);
     if (!unslid) return unslid;
-    if (const Status moved = slide.move(stepToMeet(goal, *unslid), effort.slides); !moved)
+    if (const Status moved = slide.move(stepToMeet(goal, *unslid), effort.slides, effort.octaves); !moved)
         return moved.error();
     Result<std::optional<CodedFile>> slid = codeSlid(slide, goal, progress);
     if (!slid) return slid.error();
@@ -304,13 +304,14 @@ Result<CodedFile> MeshEncoder::Prepared::codeSliding(const GridEncoders::Sampled
         if (const Status fitted = slide->refit(images->geometry); !fitted) return fitted.error();
         const GridEncoders::Slide refitted = *slide; // sharp edges fare better without sliding
         std::optional<Result<std::optional<CodedFile>>> coded[2];
-        tbb::parallel_invoke([&] { coded[0] = codeSlid(refitted, goal, {}); },
-                             [&] {
-                                 if (const Status moved = slide->move(best->step, effort.slides); !moved)
-                                     coded[1] = moved.error();
-                                 else
-                                     coded[1] = codeSlid(*slide, goal, progress);
-                             });
+        tbb::parallel_invoke(
+            [&] { coded[0] = codeSlid(refitted, goal, {}); },
+            [&] {
+                if (const Status moved = slide->move(best->step, effort.slides, effort.octaves); !moved)
+                    coded[1] = moved.error();
+                else
+                    coded[1] = codeSlid(*slide, goal, progress);
+            });
         for (auto& made : coded) {
             if (!*made) return made->error();
             if (**made && isBetter(***made, *best, goal.target)) best = std::move(***made);

@@ -109,7 +109,7 @@ Result<MeshEncoder> MeshEncoder::prepareImage(const FloatImage& image, const Enc
     SurfaceMeasure measure(options.reference ? *options.reference : open);
     out.seconds.code = watch.lap();
     return MeshEncoder(
-        std::make_unique<const Prepared>(Prepared{std::move(out), false, false, Effort::of(options.effort),
+        std::make_unique<const Prepared>(Prepared{std::move(out), false, false, Effort::of(options),
                                                   std::make_unique<GridEncoders>(std::move(source)),
                                                   std::move(measure), options.progress, options.threads}));
 }

@@ -73,12 +73,11 @@ Result<GridEncoders::Slide> GridEncoders::slide(const Sampled& sampled)
     return Slide(*this, sampled, std::move(*slide));
 }
 
-Status GridEncoders::Slide::move(float step, int rounds)
+Status GridEncoders::Slide::move(float step, int rounds, double octaves)
 {
-    Result<codec::Encoder> moved = resultOf(
-        encoder_.slid(step, rounds, [this](std::span<const float> decoded, std::span<float> targets) {
-            slide_(decoded, targets);
-        }));
+    Result<codec::Encoder> moved = resultOf(encoder_.slid(
+        step, rounds, octaves,
+        [this](std::span<const float> decoded, std::span<float> targets) { slide_(decoded, targets); }));
     if (!moved) return moved.error();
     encoder_ = std::move(*moved);
     return Done{};

@@ -51,7 +51,8 @@ public:
     {
     public:
         /// Codes at this step and moves the targets, as often as told.
-        Status move(float step, int rounds);
+        /// @param octaves  see codec::Encoder::slid
+        Status move(float step, int rounds, double octaves);
 
         /// Fits the surface of a decoded image anew, and takes its samples: where samples have slid to they
         /// want another height above the mesh.

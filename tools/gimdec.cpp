@@ -19,9 +19,12 @@ struct Arguments
 {
     std::string input, output, image, normalMap, json;
     unsigned level = 0;
-    bool noFuse = false, noDiffuse = false;
+    bool noFuse = false, noDiffuse = false, whole = false;
 
-    unsigned flags() const { return (noFuse ? GIM_NO_FUSE : 0u) | (noDiffuse ? GIM_NO_DIFFUSE : 0u); }
+    unsigned flags() const
+    {
+        return (noFuse ? GIM_NO_FUSE : 0u) | (noDiffuse ? GIM_NO_DIFFUSE : 0u) | (whole ? 0u : GIM_PREFIX);
+    }
 };
 
 std::optional<int> parseArguments(int argc, char** argv, Arguments& a)
@@ -35,6 +38,8 @@ std::optional<int> parseArguments(int argc, char** argv, Arguments& a)
                    "level of detail: 0 (default) is the finest, each further one has half the grid");
     app.add_flag("--no-fuse", a.noFuse, "leave the seam open, as it was coded: shows the cracks");
     app.add_flag("--no-diffuse", a.noDiffuse, "fuse the seam without spreading the error: shows the steps");
+    app.add_flag("--whole", a.whole,
+                 "refuse a file that is cut short; without, it gives a coarser surface and a warning");
     app.add_option("--image", a.image,
                    "also write the geometry image: .png (16 bits a channel) or .exr (exact)");
     app.add_option("--normal-map", a.normalMap, "also write the normal image, .png");
@@ -99,6 +104,11 @@ int main(int argc, char** argv)
     const Result<DecodedImages> images = decodeImages(*file, a.flags());
     if (!images) return refuse(a.input + ": " + images.error().message);
     const gim_info& info = images->info;
+    if (info.missing_bytes > 0)
+        std::cerr << "gimdec: warning: " << a.input << " is cut short: " << info.missing_bytes << " of "
+                  << info.geometry_bytes + info.missing_bytes << " bytes of the surface are missing\n";
+    else if (images->isPrefix)
+        std::cerr << "gimdec: warning: " << a.input << " is cut short after the surface\n";
     if (a.level >= info.levels)
         return refuse(a.input + ": there is no level " + std::to_string(a.level) + ", the coarsest is " +
                       std::to_string(info.levels - 1));
@@ -124,6 +134,8 @@ int main(int argc, char** argv)
     if (!a.json.empty()) {
         nlohmann::ordered_json json;
         json["bytes"] = file->size();
+        json["cut_short"] = images->isPrefix;
+        json["missing_bytes"] = info.missing_bytes;
         json["level"] = a.level;
         json["grid"] = ((info.grid - 1) >> a.level) + 1;
         json["vertices"] = mesh->vertexCount();

@@ -90,10 +90,13 @@ typedef struct gim_info {
     uint64_t normal_bytes;   /* the normals' coded samples */
     uint64_t other_bytes;    /* contents of chunks this version does not know; the five add up to the file */
     uint64_t workspace;      /* as gim_workspace_size */
+    uint64_t missing_bytes;  /* of the geometry's coded samples, in a file that is cut short; otherwise 0 */
 } gim_info;
 
 /* Reads the headers of the file and checks all its checksums.
- * `limits` may be NULL: the defaults apply. */
+ * `limits` may be NULL: the defaults apply.
+ * GIM_MORE_INPUT: the file is cut short. If info->grid is not 0 all the same, what is there can be decoded with
+ * GIM_PREFIX; info then tells what the bytes that are there hold. */
 GIM_API gim_status gim_probe(const void* bytes, size_t size, const gim_limits* limits, gim_info* info);
 
 /* Bytes of workspace that are enough for every call on the probed file. 0 for a NULL info. */
@@ -134,7 +137,7 @@ typedef struct gim_seam {
     uint32_t boundary_loops; /* of the surface; 0: it is closed */
 } gim_seam;
 
-/* Reads the seam. `sides` receives seam->sides entries; it may be NULL with capacity 0 to learn
+/* Reads the seam, also of a file that is cut short after it and the geometry's first bytes. `sides` receives seam->sides entries; it may be NULL with capacity 0 to learn
  * the numbers only. The side count never exceeds 4 (lowest - 1).
  * GIM_MISUSE: `sides` is not NULL and `capacity` is too small; seam->sides is set all the same. */
 GIM_API gim_status gim_read_seam(const void* bytes, size_t size, const gim_limits* limits, void* workspace,
@@ -143,6 +146,9 @@ GIM_API gim_status gim_read_seam(const void* bytes, size_t size, const gim_limit
 /* Flags for decoding. */
 #define GIM_NO_FUSE 1u    /* leave glued samples as they were coded: shows the cracks; implies the next */
 #define GIM_NO_DIFFUSE 2u /* fuse, but do not spread the fusing error into the interior */
+#define GIM_PREFIX 4u     /* a file that is cut short will do, as far as gim_probe says so. Surface coding puts first
+                             what tells most: the surface is coarser, and whole. What follows the cut is absent,
+                             and the chunk that is cut has no checksum that could be compared */
 
 /* Decodes the geometry image: `xyz` receives 3 * grid * grid floats, x y z of sample 0, of sample 1...
  * in the surface's own units. All are finite. Unless GIM_NO_FUSE is given, glued samples are equal.

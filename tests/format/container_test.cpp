@@ -18,7 +18,7 @@ Bytes fileOf(std::initializer_list<std::pair<char, Bytes>> chunks)
 ReadStatus statusOf(const Bytes& bytes)
 {
     Contents contents;
-    return readContents({bytes.data(), bytes.size()}, &contents);
+    return readContents({bytes.data(), bytes.size()}, false, &contents);
 }
 
 TEST(Container, OverheadIsTenBytesAndSixAChunk)
@@ -49,7 +49,7 @@ TEST(Container, FindsKnownChunksInAnyOrderAndSkipsAncillaryOnes)
 {
     const Bytes file = fileOf({{'x', {1, 2, 3}}, {'G', {7}}, {'n', {8, 8}}, {'z', {}}, {'S', {9}}});
     Contents contents;
-    ASSERT_EQ(readContents({file.data(), file.size()}, &contents), ReadStatus::Ok);
+    ASSERT_EQ(readContents({file.data(), file.size()}, false, &contents), ReadStatus::Ok);
     EXPECT_EQ(contents.chunks, 5u);
     EXPECT_EQ(contents.geometry.content.data[0], 7);
     EXPECT_EQ(contents.normals.content.size, 2u);

@@ -114,6 +114,8 @@ void addOptions(CLI::App& app, Arguments& a)
     app.add_flag("--features", a.features,
                  "lay grid lines along the sharp edges of machine parts and the like")
         ->excludes(noFit);
+    app.add_flag("--progressive", a.progressive,
+                 "let beginnings of the file serve too: better prefixes, a worse whole");
     app.add_option("--effort", a.effort, "time for quality: 1 (fast) to 9 (small files; minutes)")
         ->check(CLI::Range(EncodeOptions::kLeastEffort, EncodeOptions::kMostEffort))
         ->capture_default_str();
@@ -228,6 +230,7 @@ std::vector<std::string> fileOptions(const Arguments& a)
     if (!a.raw.empty()) add("--raw", a.raw);
     if (a.fromImage) words.push_back("--from-image");
     if (a.tolerance) add("--tolerance", shortest(*a.tolerance));
+    if (a.progressive) words.push_back("--progressive");
     if (a.effort != EncodeOptions().effort) add("--effort", std::to_string(a.effort));
     if (a.grid != 0) add("--grid", std::to_string(a.grid));
     if (a.lowest != 0) add("--lowest", std::to_string(a.lowest));
@@ -265,6 +268,7 @@ EncodeOptions encodeOptions(const Arguments& a)
     options.features = a.features;
     options.threads = a.threads;
     options.effort = a.effort;
+    options.progressive = a.progressive;
     options.coding = a.coding == "wavelet" ? LossyCoding::Wavelet : LossyCoding::Surface;
     options.density = a.density == "even" ? Density::Even : Density::Curvature;
     for (MapKind kind : kMapKinds)

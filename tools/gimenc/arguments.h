@@ -37,6 +37,7 @@ struct Arguments
     std::string weld = "auto";
     std::string param = "stretch";
     int effort = EncodeOptions().effort;
+    bool progressive = false;
     bool fromImage = false;
     std::optional<double> tolerance;
     bool noFit = false;

@@ -17,10 +17,11 @@ struct DecodedImages
 {
     gim_info info;
     FloatImage geometry;
-    FloatImage normals; ///< empty if the file has none
+    FloatImage normals;    ///< empty if the file has none
+    bool isPrefix = false; ///< the file was cut short
 };
 
-/// @param flags  GIM_NO_FUSE, GIM_NO_DIFFUSE, or 0
+/// @param flags  GIM_NO_FUSE, GIM_NO_DIFFUSE, GIM_PREFIX, or 0
 /// Errors: FileTruncated, FileCorrupt, CodecFailure (a version or size this library does not take).
 Result<DecodedImages> decodeImages(std::span<const uint8_t> file, unsigned flags = 0);
 

@@ -1,0 +1,142 @@
+#pragma once
+
+#include "detail_levels.h"
+#include "mixer.h"
+
+namespace gimg::codec {
+
+/// Details along the normal, and along the two tangents, are coded with models of their own.
+constexpr unsigned kDirections = 2;
+constexpr unsigned kGrowthModels = 5, kSignModels = 4, kBlockModels = 3;
+constexpr unsigned kSizes = 4; ///< classes of magnitudes that are refined
+
+/// Models of the bits of details.
+struct DetailModels
+{
+    BitModel levelIsEmpty[kLevels];
+    BitModel blockByLevel[kDirections][2][kLevels][9];
+    BitModel blockByParents[kDirections][2][9][14];
+    BitModel blockByRing[kDirections][2][10][14];
+    MixWeights<kBlockModels> blockWeights[kDirections][2];
+
+    BitModel lonely[kLevels][3][kDirections];
+    BitModel near[8][8][8][kDirections];
+    BitModel everything[24][kComponents][2];
+    BitModel family[10][12][3][kDirections];
+    BitModel children[10][8][3][kDirections];
+    BitModel wide[14][12][kDirections];
+    MixWeights<kGrowthModels> growthWeights[24][kDirections];
+
+    BitModel next[kSizes][24];
+
+    BitModel signNear[3][3][3][3][3][kDirections];
+    BitModel signFamily[3][3][3][3][kDirections];
+    BitModel signFar[3][3][3][3][3][kDirections];
+    BitModel signParentNear[3][3][3][3][kDirections];
+    MixWeights<kSignModels> signWeights[3][kDirections];
+};
+
+/// What is known around a place of one component of a level, and in the levels beside it.
+struct DetailPlace
+{
+    const std::uint8_t* known[kComponents];
+    const std::uint8_t* parent;   ///< nullptr at the coarsest level
+    const std::uint8_t* children; ///< the first of four; nullptr at the finest
+    std::ptrdiff_t row, parentRow, childRow;
+    unsigned orientation, level;
+};
+
+/// A sign as 0, 1 or 2.
+inline unsigned third(std::int64_t value) { return static_cast<unsigned>(signOf(value) + 1); }
+
+/// Sums of magnitudes around a detail.
+struct Surroundings
+{
+    unsigned across, along, diagonals, farther, siblings, parents, below, others;
+
+    unsigned near() const { return across + along + (diagonals + 1) / 2; }
+    unsigned all() const { return 2 * (near() + others) + parents + siblings + below + farther / 2; }
+};
+
+inline Surroundings surroundingsOf(const DetailPlace& place, unsigned component)
+{
+    const std::uint8_t* q = place.known[component];
+    const std::ptrdiff_t row = place.row, two = 2 * row;
+    Surroundings s;
+    s.across = unsigned{q[-2]} + q[2];
+    s.along = unsigned{q[-two]} + q[two];
+    s.diagonals = unsigned{q[-two - 2]} + q[-two + 2] + q[two - 2] + q[two + 2];
+    s.farther = unsigned{q[-4]} + q[4] + q[-2 * two] + q[2 * two];
+    // Of the other bands.
+    s.siblings =
+        place.orientation == Diagonal ? 0u : unsigned{q[-row - 1]} + q[-row + 1] + q[row - 1] + q[row + 1];
+    if (place.orientation != Vertical) s.siblings += unsigned{q[-row]} + q[row];
+    if (place.orientation != Horizontal) s.siblings += unsigned{q[-1]} + q[1];
+    s.parents = 0;
+    if (const std::uint8_t* p = place.parent; p != nullptr) {
+        const std::ptrdiff_t up = 2 * place.parentRow;
+        s.parents = 2u * p[0] + p[-2] + p[2] + p[-up] + p[up];
+    }
+    s.below = 0;
+    if (const std::uint8_t* p = place.children; p != nullptr) {
+        const std::ptrdiff_t down = 2 * place.childRow;
+        s.below = 2 * (unsigned{p[0]} + p[2] + p[down] + p[down + 2]);
+    }
+    s.others = 0;
+    for (unsigned c = 0; c < kComponents; ++c)
+        if (c != component) s.others += 2u * *place.known[c];
+    return s;
+}
+
+/// Whether a detail that was 0 down to the bit before is not any more.
+template <class Coder>
+bool codeGrowth(Coder& coder, DetailModels& models, const DetailPlace& place, const Surroundings& s,
+                unsigned component, bool grows)
+{
+    const unsigned d = component == 0 ? 0 : 1, o = place.orientation;
+    const unsigned sum = s.all();
+    if (sum == 0) return coder.bit(models.lonely[place.level][o][d], grows);
+    const unsigned all = quickClass<23>(sum), near = quickClass<7>(s.near());
+    BitModel* const mixed[kGrowthModels] = {
+        &models.near[quickClass<7>(s.across)][quickClass<7>(s.along)][quickClass<7>(s.diagonals)][d],
+        &models.everything[all][component][s.others != 0],
+        &models.family[quickClass<9>(s.parents)][quickClass<11>(s.siblings)][o][d],
+        &models.children[quickClass<9>(s.below)][near][o][d],
+        &models.wide[quickClass<13>(s.near() + s.farther)][quickClass<11>(2 * s.others + s.siblings)][d]};
+    return codeMixed(coder, mixed, models.growthWeights[all][d], grows);
+}
+
+/// The next bit of a detail that is not 0.
+/// @param known  its magnitude with a 0 there
+template <class Coder>
+bool codeNext(Coder& coder, DetailModels& models, const Surroundings& s, unsigned known, bool bit)
+{
+    const unsigned size = known < 4 ? 0 : known < 8 ? 1 : known < 16 ? 2 : 3;
+    return coder.bit(models.next[size][quickClass<23>(s.all())], bit);
+}
+
+/// The sign of a detail that has just grown.
+/// @param q       its place
+/// @param parent  its parent's, nullptr at the coarsest level
+template <class Coder>
+bool codeDetailSign(Coder& coder, DetailModels& models, const DetailPlace& place, const std::int32_t* q,
+                    const std::int32_t* parent, unsigned component, bool negative)
+{
+    const unsigned d = component == 0 ? 0 : 1, o = place.orientation;
+    const std::ptrdiff_t row = place.row, two = 2 * row;
+    const auto sum = [q](std::ptrdiff_t a, std::ptrdiff_t b) { return third(std::int64_t{q[a]} + q[b]); };
+    const std::int64_t siblings = o == Diagonal
+                                      ? std::int64_t{q[-row]} + q[row] + q[-1] + q[1]
+                                      : q[-row - 1] - std::int64_t{q[-row + 1]} - q[row - 1] + q[row + 1];
+    const unsigned up = third(parent == nullptr ? 0 : *parent);
+    const unsigned west = third(q[-2]);
+    BitModel* const mixed[kSignModels] = {
+        &models.signNear[o][west][third(q[2])][third(q[-two])][third(q[two])][d],
+        &models.signFamily[o][up][third(siblings)][west][d],
+        &models.signFar[o][sum(-two - 2, two + 2)][sum(-two + 2, two - 2)][sum(-4, 4)][sum(-2 * two, 2 * two)]
+                       [d],
+        &models.signParentNear[o][up][sum(-2, 2)][sum(-two, two)][d]};
+    return codeMixed(coder, mixed, models.signWeights[o][d], negative);
+}
+
+} // namespace gimg::codec
