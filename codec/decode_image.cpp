@@ -1,4 +1,5 @@
 #include "arena.h"
+#include "exact_decoder.h"
 #include "fuse.h"
 #include "image_header.h"
 #include "range_decoder.h"
@@ -8,15 +9,12 @@
 #include <cstring>
 #include <new>
 #include <type_traits>
-#include <zlib.h>
 
 namespace gimg::codec {
 
 namespace {
 
 constexpr double kLargestFloat = 3.4028234663852886e38;
-// zlib's inflate asks for its state and a 32 KiB window; variants of zlib for a little more.
-constexpr std::size_t kInflateMemory = std::size_t{1} << 17;
 
 bool isFinite(float value) { return value - value == 0.0f; }
 
@@ -146,90 +144,22 @@ ReadStatus decodeSurface(const ImageHeader& header, const SeamView& seam, const 
     return ReadStatus::Ok;
 }
 
-ReadStatus decodeRaw12(const ImageHeader& header, float* out)
+ExactFormat exactFormatOf(const ImageHeader& header)
 {
-    const std::uint8_t* bytes = header.samples.data;
+    return {header.grid, kComponents, header.coding == GIM_CODING_RAW12 ? kCubeBits : 0};
+}
+
+// Gives 12-bit integers their place in space.
+ReadStatus placeInCube(const ImageHeader& header, float* out)
+{
     const std::size_t count = kComponents * samplesOf(header.grid);
     for (std::size_t k = 0; k < count; ++k) {
-        const std::uint8_t* pair = bytes + k / 2 * 3;
-        const std::uint32_t q = k % 2 == 0 ? pair[0] | (pair[1] & 0x0Fu) << 8 : pair[1] >> 4 | pair[2] << 4;
-        const double value =
-            static_cast<double>(header.least[k % kComponents]) + q * static_cast<double>(header.step);
+        const double value = static_cast<double>(header.least[k % kComponents]) +
+                             static_cast<double>(out[k]) * static_cast<double>(header.step);
         if (!(value <= kLargestFloat && value >= -kLargestFloat)) return ReadStatus::Corrupt;
         out[k] = static_cast<float>(value);
     }
-    // The count is odd, so half a byte is left over.
-    if (bytes[header.samples.size - 1] >> 4 != 0) return ReadStatus::Corrupt;
     return ReadStatus::Ok;
-}
-
-void* takeForZlib(void* arena, unsigned items, unsigned size)
-{
-    return static_cast<Arena*>(arena)->take<unsigned char>(std::size_t{items} * size);
-}
-
-void leaveToArena(void*, void*) {}
-
-// Inflates into exactly `size` bytes.
-ReadStatus inflateExactly(format::ByteSpan packed, std::uint8_t* out, std::size_t size, Arena& arena)
-{
-    void* memory = arena.take<unsigned char>(kInflateMemory);
-    if (memory == nullptr) return ReadStatus::Misuse;
-    Arena pool(memory, kInflateMemory);
-    z_stream stream;
-    std::memset(&stream, 0, sizeof stream);
-    stream.zalloc = takeForZlib;
-    stream.zfree = leaveToArena;
-    stream.opaque = &pool;
-    if (inflateInit(&stream) != Z_OK) return ReadStatus::Misuse;
-    stream.next_in = const_cast<Bytef*>(packed.data);
-    stream.avail_in = static_cast<uInt>(packed.size);
-    stream.next_out = out;
-    stream.avail_out = static_cast<uInt>(size);
-    const int status = inflate(&stream, Z_FINISH);
-    const bool exact = status == Z_STREAM_END && stream.avail_out == 0 && stream.avail_in == 0;
-    inflateEnd(&stream);
-    return exact ? ReadStatus::Ok : ReadStatus::Corrupt;
-}
-
-// A float's bits are coded as the difference from the sample before in the row (or, at its beginning,
-// from the row below), the sign moved to the lowest bit; then bytes of equal rank lie together.
-ReadStatus decodeFloat(const ImageHeader& header, Arena& arena, float* out)
-{
-    const std::uint32_t grid = header.grid;
-    const std::size_t samples = samplesOf(grid);
-    auto* planes = arena.take<std::uint8_t>(4 * kComponents * samples);
-    if (planes == nullptr) return ReadStatus::Misuse;
-    const ReadStatus status = inflateExactly(header.samples, planes, 4 * kComponents * samples, arena);
-    if (status != ReadStatus::Ok) return status;
-    for (unsigned c = 0; c < kComponents; ++c) {
-        const std::uint8_t* plane = planes + 4 * c * samples;
-        for (std::size_t k = 0; k < samples; ++k) {
-            const std::uint32_t coded = plane[k] | std::uint32_t{plane[samples + k]} << 8 |
-                                        std::uint32_t{plane[2 * samples + k]} << 16 |
-                                        std::uint32_t{plane[3 * samples + k]} << 24;
-            const std::uint32_t difference = coded >> 1 ^ (~(coded & 1u) + 1u);
-            std::uint32_t bits = 0;
-            if (k > 0)
-                std::memcpy(&bits, &out[kComponents * (k % grid == 0 ? k - grid : k - 1) + c], sizeof bits);
-            bits += difference;
-            std::memcpy(&out[kComponents * k + c], &bits, sizeof bits);
-            if ((bits >> 23 & 0xFFu) == 0xFFu) return ReadStatus::Corrupt;
-        }
-    }
-    return ReadStatus::Ok;
-}
-
-// In the raw codings glued samples agree already if the encoder was given a closed surface; taking the
-// first of each class leaves such samples alone to the bit, and closes the others.
-void copyFirstOfClass(float* out, std::uint32_t grid, const std::uint32_t* classes)
-{
-    for (std::uint32_t k = 0; k < borderSize(grid); ++k) {
-        if (classes[k] == k) continue;
-        std::memcpy(&out[kComponents * std::size_t{borderSample(grid, k)}],
-                    &out[kComponents * std::size_t{borderSample(grid, classes[k])}],
-                    kComponents * sizeof *out);
-    }
 }
 
 } // namespace
@@ -274,8 +204,6 @@ ReadStatus readImageHeader(format::ByteSpan content, ImageKind image, ImageHeade
         if (!isFinite(least)) return ReadStatus::Corrupt;
     header->fixedBytes = in.offset();
     header->samples = in.span(in.remaining());
-    if (header->coding == GIM_CODING_RAW12 && header->samples.size != raw12Size(header->grid))
-        return ReadStatus::Corrupt;
     return ReadStatus::Ok;
 }
 
@@ -303,10 +231,8 @@ ReadStatus decodeCoefficients(const ImageHeader& header, Arena& arena, Quantized
 std::uint64_t imageWorkspace(const ImageHeader& header)
 {
     const std::size_t samples = samplesOf(header.grid);
-    if (header.coding == GIM_CODING_RAW12) return 0;
-    if (header.coding == GIM_CODING_FLOAT)
-        return Arena::sizeOf<std::uint8_t>(4 * kComponents * samples) +
-               Arena::sizeOf<std::uint8_t>(kInflateMemory);
+    if (header.coding == GIM_CODING_RAW12 || header.coding == GIM_CODING_FLOAT)
+        return exactWorkspace(exactFormatOf(header));
     if (header.coding == GIM_CODING_SURFACE) return SurfaceMemory::size(header.grid);
     return kComponents * Arena::sizeOf<std::int32_t>(samples) +
            Arena::sizeOf<std::int32_t>(rowScratchOf(header.grid)) + Arena::sizeOf<CoefficientModels>(1) +
@@ -318,13 +244,13 @@ ReadStatus decodeImage(const ImageHeader& header, const SeamView& seam, const st
                        std::uint32_t flags, Arena& arena, float* out)
 {
     if (header.coding == GIM_CODING_SURFACE) return decodeSurface(header, seam, classes, arena, out);
-    if ((flags & GIM_NO_FUSE) != 0) classes = nullptr;
-    if (header.coding == GIM_CODING_WAVELET)
+    if (header.coding == GIM_CODING_WAVELET) {
+        if ((flags & GIM_NO_FUSE) != 0) classes = nullptr;
         return decodeWavelet(header, classes, (flags & GIM_NO_DIFFUSE) == 0, arena, out);
-    const ReadStatus status =
-        header.coding == GIM_CODING_RAW12 ? decodeRaw12(header, out) : decodeFloat(header, arena, out);
-    if (status == ReadStatus::Ok && classes != nullptr) copyFirstOfClass(out, header.grid, classes);
-    return status;
+    }
+    const ReadStatus status = decodeExact(header.samples, exactFormatOf(header), classes, arena, out);
+    if (status != ReadStatus::Ok || header.coding == GIM_CODING_FLOAT) return status;
+    return placeInCube(header, out);
 }
 
 void normalize(float* vectors, std::size_t count)

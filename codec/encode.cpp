@@ -1,6 +1,7 @@
 #include "encode.h"
 
 #include "border.h"
+#include "exact_encoder.h"
 #include "format/container.h"
 #include "format/writer.h"
 #include "image_header.h"
@@ -8,7 +9,6 @@
 #include <algorithm>
 #include <cmath>
 #include <functional>
-#include <zlib.h>
 
 namespace gimg::codec {
 
@@ -86,13 +86,24 @@ Bytes surfaceContent(const SurfaceEncoder& encoder, const TransformedSurface& su
     return content;
 }
 
-struct Raw12
+Bytes exactContent(std::span<const float> samples, std::uint32_t grid, gim_coding coding,
+                   std::span<const float> fields, const Seam& seam)
+{
+    Bytes content = imageContent(grid, coding);
+    for (const float field : fields) format::appendF32(content, field);
+    const ExactFormat format = {grid, kComponents, coding == GIM_CODING_RAW12 ? kCubeBits : 0};
+    for (const std::uint8_t byte : encodeExact(samples, format, borderClasses(seam, grid)))
+        content.push_back(byte);
+    return content;
+}
+
+struct IntegerContent
 {
     Bytes content; ///< empty if the samples are too far apart
     float step = 0;
 };
 
-Raw12 raw12Content(std::span<const float> samples, std::uint32_t grid)
+IntegerContent integerContent(std::span<const float> samples, std::uint32_t grid, const Seam& seam)
 {
     float least[kComponents], most[kComponents];
     for (unsigned c = 0; c < kComponents; ++c) least[c] = most[c] = samples[c];
@@ -104,53 +115,17 @@ Raw12 raw12Content(std::span<const float> samples, std::uint32_t grid)
     double side = 0;
     for (unsigned c = 0; c < kComponents; ++c)
         side = std::max(side, static_cast<double>(most[c]) - static_cast<double>(least[c]));
-    Raw12 out;
-    out.step = std::max(static_cast<float>(side / 4095), kSmallestStep);
-    if (out.step > kLargestStep) return {};
-    out.content = imageContent(grid, GIM_CODING_RAW12);
-    for (const float value : least) format::appendF32(out.content, value);
-    format::appendF32(out.content, out.step);
-    std::uint32_t bits = 0;
-    unsigned count = 0;
+    constexpr long kMost = (1l << kCubeBits) - 1;
+    const float step = std::max(static_cast<float>(side / static_cast<double>(kMost)), kSmallestStep);
+    if (step > kLargestStep) return {};
+    std::vector<float> integers(samples.size());
     for (std::size_t k = 0; k < samples.size(); ++k) {
         const double offset = static_cast<double>(samples[k]) - static_cast<double>(least[k % kComponents]);
-        const auto q = static_cast<std::uint32_t>(
-            std::clamp(std::lround(offset / static_cast<double>(out.step)), 0l, 4095l));
-        bits |= q << count;
-        for (count += 12; count >= 8; count -= 8, bits >>= 8)
-            out.content.push_back(static_cast<std::uint8_t>(bits));
+        integers[k] =
+            static_cast<float>(std::clamp(std::lround(offset / static_cast<double>(step)), 0l, kMost));
     }
-    if (count > 0) out.content.push_back(static_cast<std::uint8_t>(bits));
-    return out;
-}
-
-std::uint32_t bitsOf(float value)
-{
-    std::uint32_t bits;
-    std::memcpy(&bits, &value, sizeof bits);
-    return bits;
-}
-
-Bytes floatContent(std::span<const float> samples, std::uint32_t grid)
-{
-    const std::size_t count = std::size_t{grid} * grid;
-    Bytes planes(4 * samples.size());
-    for (unsigned c = 0; c < kComponents; ++c)
-        for (std::size_t k = 0; k < count; ++k) {
-            const std::uint32_t before =
-                k == 0 ? 0 : bitsOf(samples[kComponents * (k % grid == 0 ? k - grid : k - 1) + c]);
-            const std::uint32_t difference = bitsOf(samples[kComponents * k + c]) - before;
-            const std::uint32_t coded = difference << 1 ^ ((difference >> 31) != 0 ? 0xFFFFFFFFu : 0u);
-            for (unsigned b = 0; b < 4; ++b)
-                planes[(4 * c + b) * count + k] = static_cast<std::uint8_t>(coded >> 8 * b);
-        }
-    Bytes content = imageContent(grid, GIM_CODING_FLOAT);
-    uLongf packed = compressBound(static_cast<uLong>(planes.size()));
-    content.resize(1 + packed);
-    compress2(content.data() + 1, &packed, planes.data(), static_cast<uLong>(planes.size()),
-              Z_BEST_COMPRESSION);
-    content.resize(1 + packed);
-    return content;
+    const float fields[] = {least[0], least[1], least[2], step};
+    return {exactContent(integers, grid, GIM_CODING_RAW12, fields, seam), step};
 }
 
 Bytes assemble(std::uint32_t lowest, const Bytes& word, const Bytes& geometry, const Bytes* normals)
@@ -331,14 +306,14 @@ Outcome<EncodedFile> Encoder::encode(const Settings& settings) const
             break;
         }
         case GIM_CODING_RAW12: {
-            Raw12 raw = raw12Content(*samples[k], grids[k]);
-            if (raw.content.empty()) return failed("the samples are too large for 12-bit coding");
-            content[k] = std::move(raw.content);
-            written[k] = raw.step;
+            IntegerContent integers = integerContent(*samples[k], grids[k], seam_);
+            if (integers.content.empty()) return failed("the samples are too large for 12-bit coding");
+            content[k] = std::move(integers.content);
+            written[k] = integers.step;
             break;
         }
         case GIM_CODING_FLOAT:
-            content[k] = floatContent(*samples[k], grids[k]);
+            content[k] = exactContent(*samples[k], grids[k], GIM_CODING_FLOAT, {}, seam_);
             written[k] = 0;
             break;
         default:

@@ -22,11 +22,11 @@ struct ImageHeader
 {
     std::uint32_t grid = 0;
     gim_coding coding = GIM_CODING_WAVELET;
-    float step = 0;                ///< wavelet: quantisation step; raw12: distance of neighbouring integers
+    float step = 0;                ///< wavelet: quantisation step; 12-bit: distance of neighbouring integers
     std::uint8_t shifts = 0;       ///< wavelet: see Dequantizer
     std::uint8_t ratios = 0;       ///< surface: see surfaceParameters()
     std::uint8_t limits = 0;       ///< surface: likewise
-    float least[kComponents] = {}; ///< raw12: what integer 0 stands for
+    float least[kComponents] = {}; ///< 12-bit: what integer 0 stands for
     format::ByteSpan samples;      ///< the coded samples
     std::size_t fixedBytes = 0;
 };
@@ -34,8 +34,7 @@ struct ImageHeader
 /// Reads and checks the fixed fields of a geometry or normal chunk.
 ReadStatus readImageHeader(format::ByteSpan content, ImageKind kind, ImageHeader* header);
 
-/// Bytes of `samples` raw12 coding takes.
-constexpr std::uint64_t raw12Size(std::uint64_t grid) { return (grid * grid * kComponents * 12 + 7) / 8; }
+constexpr unsigned kCubeBits = 12; ///< of the integers of 12-bit coding
 
 /// What the fixed fields of a surface's chunk mean. The low nibble of `ratios` is SurfaceParameters::rise,
 /// the high one half of SurfaceParameters::most; the low nibble of `limits` is the area limit in quarters
@@ -53,7 +52,7 @@ ReadStatus decodeCoefficients(const ImageHeader& header, Arena& arena, Quantized
 
 /// Decodes an image of three components into 3 grid^2 floats.
 /// @param classes  borderClasses() of the grid
-/// @param flags    GIM_NO_FUSE, GIM_NO_DIFFUSE
+/// @param flags    GIM_NO_FUSE, GIM_NO_DIFFUSE: of wavelet coding alone
 ReadStatus decodeImage(const ImageHeader& header, const SeamView& seam, const std::uint32_t* classes,
                        std::uint32_t flags, Arena& arena, float* out);
 

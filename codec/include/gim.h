@@ -66,8 +66,8 @@ typedef struct gim_limits {
 
 typedef enum gim_coding {
     GIM_CODING_WAVELET = 0, /* lossy: wavelet coefficients of each component, quantised with one step */
-    GIM_CODING_RAW12 = 1,   /* 12-bit integers over a common cube */
-    GIM_CODING_FLOAT = 2,   /* the float32 samples themselves, packed without loss */
+    GIM_CODING_RAW12 = 1,   /* 12-bit integers over a common cube, coded without loss; always fused */
+    GIM_CODING_FLOAT = 2,   /* the float32 samples themselves, coded without loss; always fused */
     GIM_CODING_SURFACE = 3  /* lossy: wavelet coefficients along the surface's normals and tangents, across
                                the seam; geometry only, and always fused */
 } gim_coding;
@@ -141,7 +141,8 @@ GIM_API gim_status gim_read_seam(const void* bytes, size_t size, const gim_limit
                                  size_t workspace_size, gim_seam* seam, gim_side* sides, uint32_t capacity);
 
 /* Flags for decoding. */
-#define GIM_NO_FUSE 1u    /* leave glued samples as they were coded: shows the cracks; implies the next */
+#define GIM_NO_FUSE 1u    /* leave glued samples as they were coded: shows the cracks; implies the next. Wavelet
+                           * images only: the other codings code glued samples as one */
 #define GIM_NO_DIFFUSE 2u /* fuse, but do not spread the fusing error into the interior */
 
 /* Decodes the geometry image: `xyz` receives 3 * grid * grid floats, x y z of sample 0, of sample 1...
