@@ -413,17 +413,13 @@ private:
         near.add(sizeAt(i + 2 * s, j - 2 * s, c), 2);
         near.add(sizeAt(i - 4 * s, j, c), 1);
         near.add(sizeAt(i, j - 4 * s, c), 1);
-        if (band != Vertical) {
-            coarser.add(sizeAt(i - s, j, c), 1);
-            coarser.add(sizeAt(i + s, j, c), 1);
-        }
-        if (band != Horizontal) {
-            const std::int32_t beside = band == Vertical ? s : 0;
-            coarser.add(sizeAt(i - beside, j - s, c), 1);
-            coarser.add(sizeAt(i + beside, j - s, c), 1);
-            coarser.add(sizeAt(i - beside, j + s, c), 1);
-            coarser.add(sizeAt(i + beside, j + s, c), 1);
-        }
+        const auto addPair = [&](std::int32_t di, std::int32_t dj) {
+            coarser.add(sizeAt(i - di, j - dj, c), 1);
+            coarser.add(sizeAt(i + di, j + dj, c), 1);
+        };
+        addPair(s, band == Vertical ? s : 0);
+        if (band == Vertical) addPair(s, -s);
+        if (band == Diagonal) addPair(0, s);
         const std::size_t here = indexOf(i, j);
         for (unsigned k = 0; k < c; ++k) others.add(work_.sizes[here + k], 1);
         for (unsigned k = 1; c == 0 && k < channels_; ++k) {
