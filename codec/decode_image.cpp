@@ -1,4 +1,5 @@
 #include "arena.h"
+#include "attribute_header.h"
 #include "exact_decoder.h"
 #include "fuse.h"
 #include "image_header.h"
@@ -17,6 +18,24 @@ namespace {
 constexpr double kLargestFloat = 3.4028234663852886e38;
 
 bool isFinite(float value) { return value - value == 0.0f; }
+
+// Whether an image of this kind may have this coding.
+bool isCodingOf(ImageKind image, unsigned coding)
+{
+    switch (coding) {
+    case GIM_CODING_WAVELET:
+    case GIM_CODING_RAW12:
+        return image != ImageKind::Attribute;
+    case GIM_CODING_FLOAT:
+        return true;
+    case GIM_CODING_SURFACE:
+        return image == ImageKind::Geometry;
+    case GIM_CODING_FIELD:
+        return image != ImageKind::Geometry;
+    default:
+        return false;
+    }
+}
 
 bool stepInRange(float step) { return step >= kSmallestStep && step <= kLargestStep; }
 
@@ -115,8 +134,9 @@ struct PlainDetails
     void begin(const SurfaceLevel&, const double* const (&)[kComponents]) const {}
     bool isEmpty() const { return false; }
     bool isFilled(std::uint32_t, std::uint32_t, unsigned) const { return false; }
+    template <class AnyFrame>
     std::int32_t operator()(RangeDecoder& decoder, const DetailContext& context, unsigned, std::size_t,
-                            const Frame&) const
+                            const AnyFrame&) const
     {
         return codeSurfaceDetail(decoder, context, 0);
     }
@@ -132,7 +152,8 @@ ReadStatus decodeSurface(const ImageHeader& header, const SeamView& seam, const 
     RangeDecoder decoder(header.samples);
     QuantizedImage coarse;
     const PlainDetails pick;
-    codeSurface(decoder, *memory.models, surfaceParameters(header), border, coarse, memory.work, pick);
+    codeSurface(decoder, *memory.models, SurfaceFrames(surfaceParameters(header)), border, coarse,
+                memory.work, pick);
     if (!decoder.finished()) return ReadStatus::Corrupt;
     const std::size_t samples = samplesOf(header.grid);
     for (unsigned c = 0; c < kComponents; ++c)
@@ -144,9 +165,74 @@ ReadStatus decodeSurface(const ImageHeader& header, const SeamView& seam, const 
     return ReadStatus::Ok;
 }
 
+// Decodes a field's channels by threes.
+/// @param store  store(number of a sample's channel, value)
+template <class Store>
+ReadStatus decodeField(const ImageHeader& header, unsigned channels, bool glued, const SeamView& seam,
+                       const std::uint32_t* classes, Arena& arena, const Store& store)
+{
+    SurfaceMemory memory;
+    if (!memory.take(arena, header.grid)) return ReadStatus::Misuse;
+    const GluedBorder border =
+        glued ? GluedBorder(seam, header.grid, classes, memory.mates) : GluedBorder(header.grid);
+    new (memory.models) SurfaceModels();
+    RangeDecoder decoder(header.samples);
+    const FieldParameters parameters = fieldParameters(header);
+    const PlainDetails pick;
+    const std::size_t samples = samplesOf(header.grid);
+    for (unsigned first = 0; first < channels; first += kComponents) {
+        const unsigned count = channels - first < kComponents ? channels - first : kComponents;
+        QuantizedImage coarse;
+        codeSurface(decoder, *memory.models, FieldFrames(parameters, count), border, coarse, memory.work,
+                    pick);
+        if (decoder.failed()) return ReadStatus::Corrupt;
+        for (unsigned c = 0; c < count; ++c)
+            for (std::size_t k = 0; k < samples; ++k) {
+                const double value = memory.work.surface[c][k];
+                if (!(value <= kLargestFloat && value >= -kLargestFloat)) return ReadStatus::Corrupt;
+                store(channels * k + first + c, value);
+            }
+    }
+    return decoder.finished() ? ReadStatus::Ok : ReadStatus::Corrupt;
+}
+
+/// The integer nearest to a number, halves upwards, of those that the type holds.
+template <class Integer> Integer nearestOf(double value)
+{
+    constexpr Integer most = static_cast<Integer>(~Integer{0});
+    if (!(value > 0)) return 0;
+    if (value >= most) return most;
+    return static_cast<Integer>(static_cast<std::uint32_t>(value + 0.5));
+}
+
 ExactFormat exactFormatOf(const ImageHeader& header)
 {
     return {header.grid, kComponents, header.coding == GIM_CODING_RAW12 ? kCubeBits : 0};
+}
+
+ExactFormat exactFormatOf(const AttributeHeader& header)
+{
+    return {header.image.grid, header.channels,
+            header.type == GIM_U8    ? 8u
+            : header.type == GIM_U16 ? 16u
+                                     : 0u};
+}
+
+template <class Integer>
+ReadStatus decodeIntegers(const AttributeHeader& header, const SeamView& seam, const std::uint32_t* classes,
+                          Arena& arena, Integer* out)
+{
+    if (header.image.coding == GIM_CODING_FIELD)
+        return decodeField(header.image, header.channels, header.glued, seam, classes, arena,
+                           [out](std::size_t k, double value) { out[k] = nearestOf<Integer>(value); });
+    const std::size_t count = header.channels * samplesOf(header.image.grid);
+    auto* floats = arena.take<float>(count);
+    if (floats == nullptr) return ReadStatus::Misuse;
+    const ReadStatus status = decodeExact(header.image.samples, exactFormatOf(header),
+                                          header.glued ? classes : nullptr, arena, floats);
+    if (status != ReadStatus::Ok) return status;
+    for (std::size_t k = 0; k < count; ++k) out[k] = static_cast<Integer>(floats[k]);
+    return ReadStatus::Ok;
 }
 
 // Gives 12-bit integers their place in space.
@@ -175,6 +261,15 @@ SurfaceParameters surfaceParameters(const ImageHeader& header)
     return parameters;
 }
 
+FieldParameters fieldParameters(const ImageHeader& header)
+{
+    FieldParameters parameters;
+    parameters.step = static_cast<double>(header.step);
+    parameters.axes = static_cast<FieldAxes>(header.axes & 0x0Fu);
+    parameters.ratio = powerOfQuarters(2 * (header.axes >> 4));
+    return parameters;
+}
+
 ReadStatus readImageHeader(format::ByteSpan content, ImageKind image, ImageHeader* header)
 {
     // The chunk is known to be complete: what is missing inside it is an error of its own.
@@ -182,8 +277,7 @@ ReadStatus readImageHeader(format::ByteSpan content, ImageKind image, ImageHeade
     const std::uint8_t kind = in.u8();
     if (in.failed()) return ReadStatus::Corrupt;
     const unsigned exponent = kind & 0x0Fu, coding = kind >> 4 & 0x07u;
-    if (kind >> 7 != 0 || coding > GIM_CODING_SURFACE) return ReadStatus::Unsupported;
-    if (coding == GIM_CODING_SURFACE && image != ImageKind::Geometry) return ReadStatus::Unsupported;
+    if (kind >> 7 != 0 || !isCodingOf(image, coding)) return ReadStatus::Unsupported;
     if (exponent == 0 || exponent > kLargestExponent) return ReadStatus::Unsupported;
     header->grid = (1u << exponent) + 1;
     header->coding = static_cast<gim_coding>(coding);
@@ -194,6 +288,11 @@ ReadStatus readImageHeader(format::ByteSpan content, ImageKind image, ImageHeade
         header->step = in.f32();
         header->ratios = in.u8();
         header->limits = in.u8();
+    } else if (header->coding == GIM_CODING_FIELD) {
+        header->step = in.f32();
+        header->axes = in.u8();
+        if (!in.failed() && (header->axes & 0x0Fu) > static_cast<unsigned>(FieldAxes::Radial))
+            return ReadStatus::Unsupported;
     } else if (header->coding == GIM_CODING_RAW12) {
         for (float& least : header->least) least = in.f32();
         header->step = in.f32();
@@ -233,7 +332,8 @@ std::uint64_t imageWorkspace(const ImageHeader& header)
     const std::size_t samples = samplesOf(header.grid);
     if (header.coding == GIM_CODING_RAW12 || header.coding == GIM_CODING_FLOAT)
         return exactWorkspace(exactFormatOf(header));
-    if (header.coding == GIM_CODING_SURFACE) return SurfaceMemory::size(header.grid);
+    if (header.coding == GIM_CODING_SURFACE || header.coding == GIM_CODING_FIELD)
+        return SurfaceMemory::size(header.grid);
     return kComponents * Arena::sizeOf<std::int32_t>(samples) +
            Arena::sizeOf<std::int32_t>(rowScratchOf(header.grid)) + Arena::sizeOf<CoefficientModels>(1) +
            Arena::sizeOf<double>(samples) + Arena::sizeOf<double>(coarseSamplesOf(header.grid)) +
@@ -244,6 +344,9 @@ ReadStatus decodeImage(const ImageHeader& header, const SeamView& seam, const st
                        std::uint32_t flags, Arena& arena, float* out)
 {
     if (header.coding == GIM_CODING_SURFACE) return decodeSurface(header, seam, classes, arena, out);
+    if (header.coding == GIM_CODING_FIELD)
+        return decodeField(header, kComponents, true, seam, classes, arena,
+                           [out](std::size_t k, double value) { out[k] = static_cast<float>(value); });
     if (header.coding == GIM_CODING_WAVELET) {
         if ((flags & GIM_NO_FUSE) != 0) classes = nullptr;
         return decodeWavelet(header, classes, (flags & GIM_NO_DIFFUSE) == 0, arena, out);
@@ -251,6 +354,33 @@ ReadStatus decodeImage(const ImageHeader& header, const SeamView& seam, const st
     const ReadStatus status = decodeExact(header.samples, exactFormatOf(header), classes, arena, out);
     if (status != ReadStatus::Ok || header.coding == GIM_CODING_FLOAT) return status;
     return placeInCube(header, out);
+}
+
+std::uint64_t attributeWorkspace(const AttributeHeader& header)
+{
+    if (header.image.coding == GIM_CODING_FIELD) return imageWorkspace(header.image);
+    const std::uint64_t floats =
+        header.type == GIM_F32 ? 0 : Arena::sizeOf<float>(header.channels * samplesOf(header.image.grid));
+    return exactWorkspace(exactFormatOf(header)) + floats;
+}
+
+ReadStatus decodeAttribute(const AttributeHeader& header, const SeamView& seam, const std::uint32_t* classes,
+                           Arena& arena, void* out)
+{
+    switch (header.type) {
+    case GIM_U8:
+        return decodeIntegers(header, seam, classes, arena, static_cast<std::uint8_t*>(out));
+    case GIM_U16:
+        return decodeIntegers(header, seam, classes, arena, static_cast<std::uint16_t*>(out));
+    default:
+        break;
+    }
+    auto* floats = static_cast<float*>(out);
+    if (header.image.coding == GIM_CODING_FIELD)
+        return decodeField(header.image, header.channels, header.glued, seam, classes, arena,
+                           [floats](std::size_t k, double value) { floats[k] = static_cast<float>(value); });
+    return decodeExact(header.image.samples, exactFormatOf(header), header.glued ? classes : nullptr, arena,
+                       floats);
 }
 
 void normalize(float* vectors, std::size_t count)

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "field_frame.h"
 #include "format/bytes.h"
 #include "gim.h"
 #include "quantizer.h"
@@ -13,6 +14,7 @@ enum class ImageKind
 {
     Geometry,
     Normals,
+    Attribute,
 };
 
 constexpr unsigned kLargestExponent = 12; ///< 4097 samples a side
@@ -26,12 +28,14 @@ struct ImageHeader
     std::uint8_t shifts = 0;       ///< wavelet: see Dequantizer
     std::uint8_t ratios = 0;       ///< surface: see surfaceParameters()
     std::uint8_t limits = 0;       ///< surface: likewise
+    std::uint8_t axes = 0;         ///< field: see fieldParameters()
     float least[kComponents] = {}; ///< 12-bit: what integer 0 stands for
     format::ByteSpan samples;      ///< the coded samples
     std::size_t fixedBytes = 0;
 };
 
-/// Reads and checks the fixed fields of a geometry or normal chunk.
+/// Reads and checks the fixed fields of a geometry or normal chunk, or those of an attribute's from the kind
+/// byte on.
 ReadStatus readImageHeader(format::ByteSpan content, ImageKind kind, ImageHeader* header);
 
 constexpr unsigned kCubeBits = 12; ///< of the integers of 12-bit coding
@@ -40,6 +44,10 @@ constexpr unsigned kCubeBits = 12; ///< of the integers of 12-bit coding
 /// the high one half of SurfaceParameters::most; the low nibble of `limits` is the area limit in quarters
 /// above 1, the high one the flatness in half octaves, 0 for 1.
 SurfaceParameters surfaceParameters(const ImageHeader& header);
+
+/// What the fixed fields of a field's chunk mean. The low nibble of `axes` is a FieldAxes, the high one the
+/// ratio of steps in half octaves.
+FieldParameters fieldParameters(const ImageHeader& header);
 
 /// Bytes that decodeImage() takes from its arena.
 std::uint64_t imageWorkspace(const ImageHeader& header);

@@ -58,7 +58,7 @@ inline SharedDetail sharedDetail(const SurfaceLevel& level, unsigned orientation
 /// @param isFilled  isFilled(bi, bj, direction), asked of encoders
 template <class Coder, class IsFilled>
 void codeBlocks(Coder& coder, SurfaceModels& models, const SurfaceWork& work, const SurfaceLevel& level,
-                BlockMap& blocks, const IsFilled& isFilled)
+                unsigned components, BlockMap& blocks, const IsFilled& isFilled)
 {
     const std::uint32_t m = level.size / 2 + 1;
     constexpr int kHalf = BlockMap::kBlock / 2;
@@ -68,7 +68,7 @@ void codeBlocks(Coder& coder, SurfaceModels& models, const SurfaceWork& work, co
             // The coarser level's details below the block, and those one further.
             std::uint64_t below[kDirections] = {}, ring[kDirections] = {};
             if (level.index > 0)
-                for (unsigned c = 0; c < kComponents; ++c) {
+                for (unsigned c = 0; c < components; ++c) {
                     const std::int32_t* corner =
                         work.parents[c] + codedIndex(m, bi * BlockMap::kBlock / 2, bj * BlockMap::kBlock / 2);
                     for (int dj = -2; dj <= kHalf + 2; ++dj)
@@ -80,7 +80,7 @@ void codeBlocks(Coder& coder, SurfaceModels& models, const SurfaceWork& work, co
                         }
                 }
             unsigned before = 0;
-            for (unsigned d = 0; d < kDirections; ++d) {
+            for (unsigned d = 0; d < kDirections && d < components; ++d) {
                 const unsigned around = blocks.around(bi, bj, d);
                 const unsigned b = quickClass<13>(below[d]), r = quickClass<13>(ring[d]);
                 BitModel* const mixed[3] = {&models.blockByLevel[d][before][level.index][around],
@@ -95,19 +95,20 @@ void codeBlocks(Coder& coder, SurfaceModels& models, const SurfaceWork& work, co
 
 /// Codes the details of one level. On entry work.surface holds the prediction and work.detail zeros; on
 /// return work.detail holds the details as vectors.
-/// @param pick  pick(coder, context, component, index in the level, frame) codes a detail with
+/// @param frames  SurfaceFrames or FieldFrames: the axes and steps of details
+/// @param pick    pick(coder, context, component, index in the level, frame) codes a detail with
 /// codeSurfaceDetail() and returns it; asked of encoders: pick.isEmpty(), of the level, and
 /// pick.isFilled(bi, bj, direction), of a block
 /// @return whether any block is filled
-template <class Coder, class Pick>
-bool codeLevel(Coder& coder, SurfaceModels& models, const SurfaceParameters& parameters, SurfaceWork& work,
+template <class Coder, class Frames, class Pick>
+bool codeLevel(Coder& coder, SurfaceModels& models, const Frames& frames, SurfaceWork& work,
                const SurfaceLevel& level, Pick& pick)
 {
     const std::uint32_t n = level.size, m = n / 2 + 1;
     const double* planes[kComponents] = {work.surface[0], work.surface[1], work.surface[2]};
     if (coder.bit(models.levelIsEmpty[level.index], pick.isEmpty())) return false;
     BlockMap& blocks = work.blocks;
-    codeBlocks(coder, models, work, level, blocks,
+    codeBlocks(coder, models, work, level, frames.components(), blocks,
                [&](std::uint32_t bi, std::uint32_t bj, unsigned d) { return pick.isFilled(bi, bj, d); });
 
     DetailNeighbourhood around;
@@ -119,7 +120,7 @@ bool codeLevel(Coder& coder, SurfaceModels& models, const SurfaceParameters& par
         if (!shared.isFirst) return;
         const std::size_t place = j * std::size_t{n} + i;
         const std::size_t index = codedIndex(n, i, j);
-        const Frame frame = frameAt(planes, level, parameters, orientation, i, j);
+        const auto frame = frames.at(planes, level, orientation, i, j);
         const std::uint32_t pi = i / 2 / 2 * 2 + i % 2, pj = j / 2 / 2 * 2 + j % 2;
         for (unsigned c = 0; c < kComponents; ++c) {
             around.near[c] = work.coded[c] + index;
@@ -127,10 +128,10 @@ bool codeLevel(Coder& coder, SurfaceModels& models, const SurfaceParameters& par
         }
         std::int32_t here[kComponents] = {};
         Vector detail = {0, 0, 0};
-        for (unsigned c = 0; c < kComponents; ++c) {
+        for (unsigned c = 0; c < frames.components(); ++c) {
             if (!isCoded[c]) continue;
             const DetailContext context =
-                contextOfDetail(models, around, here, c, orientation, level.index, frame.bend);
+                contextOfDetail(models, around, here, c, orientation, level.index, frames.bend(frame, c));
             const std::int32_t q = pick(coder, context, c, place, frame);
             here[c] = q;
             if (q == 0) continue;
@@ -168,19 +169,21 @@ bool codeLevel(Coder& coder, SurfaceModels& models, const SurfaceParameters& par
     return true;
 }
 
-/// Codes a surface coarse to fine; on return work.surface holds it as it will be decoded.
+/// Codes a surface, or up to three channels of a field, coarse to fine; on return work.surface holds it as it
+/// will be decoded.
+/// @param frames  see codeLevel()
 /// @param coarse  the 3 x 3 image in steps: read by encoders, written by decoders
 /// @param pick    see codeLevel(); pick.begin(level, prediction) is called before each level
 /// Failure shows in the coder.
-template <class Coder, class Pick>
-void codeSurface(Coder& coder, SurfaceModels& models, const SurfaceParameters& parameters,
-                 const GluedBorder& border, QuantizedImage& coarse, SurfaceWork& work, Pick& pick)
+template <class Coder, class Frames, class Pick>
+void codeSurface(Coder& coder, SurfaceModels& models, const Frames& frames, const GluedBorder& border,
+                 QuantizedImage& coarse, SurfaceWork& work, Pick& pick)
 {
     const std::uint32_t grid = border.grid();
-    detail::codeCoarse(coder, models.coarse, coarse);
+    detail::codeCoarse(coder, models.coarse, coarse, frames.components());
     for (unsigned c = 0; c < kComponents; ++c)
         for (unsigned k = 0; k < kCoarsest * kCoarsest; ++k)
-            work.surface[c][k] = static_cast<double>(coarse.coarse[c][k]) * parameters.step;
+            work.surface[c][k] = static_cast<double>(coarse.coarse[c][k]) * frames.coarseStep();
     if (border.isGluedAt(kCoarsest))
         for (unsigned c = 0; c < kComponents; ++c) border.average(work.surface[c], kCoarsest, work.border);
 
@@ -194,11 +197,13 @@ void codeSurface(Coder& coder, SurfaceModels& models, const SurfaceParameters& p
             double *coarser = work.coarse[c], *finer = work.surface[c];
             std::memcpy(coarser, finer, std::size_t{m} * m * sizeof *finer);
             std::memset(finer, 0, count * sizeof *finer);
-            for (std::uint32_t j = 0; j < m; ++j)
-                for (std::uint32_t i = 0; i < m; ++i)
-                    finer[2 * j * std::size_t{n} + 2 * i] =
-                        coarser[j * std::size_t{m} + i] * kInverseAreaScale;
-            inverseLifting(finer, n, level.border, work.border);
+            if (c < frames.components()) {
+                for (std::uint32_t j = 0; j < m; ++j)
+                    for (std::uint32_t i = 0; i < m; ++i)
+                        finer[2 * j * std::size_t{n} + 2 * i] =
+                            coarser[j * std::size_t{m} + i] * kInverseAreaScale;
+                inverseLifting(finer, n, level.border, work.border);
+            }
             std::memset(work.detail[c], 0, count * sizeof *finer);
             std::int32_t* coded = work.parents[c];
             work.parents[c] = work.coded[c];
@@ -206,11 +211,10 @@ void codeSurface(Coder& coder, SurfaceModels& models, const SurfaceParameters& p
             std::memset(coded, 0, codedSize(n) * sizeof *coded);
         }
         const double* planes[kComponents] = {work.surface[0], work.surface[1], work.surface[2]};
-        level.meanArea = meanCellArea(planes, n);
-        level.largestRatio = largestTangentialRatio(parameters, level.index);
+        frames.begin(level, planes);
         pick.begin(level, planes);
-        if (codeLevel(coder, models, parameters, work, level, pick)) {
-            for (unsigned c = 0; c < kComponents; ++c) {
+        if (codeLevel(coder, models, frames, work, level, pick)) {
+            for (unsigned c = 0; c < frames.components(); ++c) {
                 double *details = work.detail[c], *finer = work.surface[c];
                 for (std::uint32_t j = 1; j < n; j += 2)
                     for (std::uint32_t i = 1; i < n; i += 2) details[j * std::size_t{n} + i] *= kAreaScale;

@@ -48,11 +48,12 @@ private:
 };
 
 /// Chooses and codes one detail after the other.
-class ThriftyDetails
+/// @param Frames  SurfaceFrames or FieldFrames
+template <class Frames> class ThriftyDetails
 {
 public:
-    ThriftyDetails(const TransformedSurface& surface, const SurfaceParameters& parameters)
-        : surface_(surface), parameters_(parameters)
+    ThriftyDetails(const TransformedSurface& surface, const Frames& frames)
+        : surface_(surface), frames_(frames)
     {
     }
 
@@ -66,11 +67,11 @@ public:
             for (std::uint32_t j = firstRow(orientation); j < n; j += 2)
                 for (std::uint32_t i = firstColumn(orientation); i < n; i += 2) {
                     if (!sharedDetail(level, orientation, i, j).isFirst) continue;
-                    const Frame frame = frameAt(prediction, level, parameters_, orientation, i, j);
+                    const auto frame = frames_.at(prediction, level, orientation, i, j);
                     double* worths =
                         &worth_[2 * (std::min(j / BlockMap::kBlock, side_ - 1) * std::size_t{side_} +
                                      std::min(i / BlockMap::kBlock, side_ - 1))];
-                    for (unsigned c = 0; c < kComponents; ++c) {
+                    for (unsigned c = 0; c < frames_.components(); ++c) {
                         const double size = std::abs(exactIn(frame, c, j * std::size_t{n} + i));
                         const double nearest = std::floor(size + 0.5);
                         if (nearest == 0) continue;
@@ -91,8 +92,9 @@ public:
         return std::none_of(worth_.begin(), worth_.end(), [](double worth) { return worth > 0; });
     }
 
+    template <class AnyFrame>
     std::int32_t operator()(RangeEncoder& coder, const DetailContext& context, unsigned component,
-                            std::size_t index, const Frame& frame) const
+                            std::size_t index, const AnyFrame& frame) const
     {
         const double exact = exactIn(frame, component, index);
         const double size = std::min(std::abs(exact), static_cast<double>(kMaxDetail - 1));
@@ -107,14 +109,15 @@ public:
 
 private:
     // A detail's component, in steps.
-    double exactIn(const Frame& frame, unsigned component, std::size_t index) const
+    template <class AnyFrame>
+    double exactIn(const AnyFrame& frame, unsigned component, std::size_t index) const
     {
         const Vector detail = {exact_->detail[0][index], exact_->detail[1][index], exact_->detail[2][index]};
         return dot(frame.axis[component], detail) / frame.step[component];
     }
 
     const TransformedSurface& surface_;
-    const SurfaceParameters& parameters_;
+    const Frames& frames_;
     std::vector<double> worth_; // of the level's blocks
     std::uint32_t side_ = 0;
     const TransformedSurface::Level* exact_ = nullptr;
@@ -135,7 +138,13 @@ SeamView SurfaceEncoder::view() const
 TransformedSurface SurfaceEncoder::transform(std::span<const float> samples) const
 {
     std::vector<std::uint32_t> mates(classes_.size());
-    const GluedBorder border(view(), grid_, classes_.data(), mates.data());
+    return transform(samples, kComponents, 0, GluedBorder(view(), grid_, classes_.data(), mates.data()));
+}
+
+// Channels beyond the last are zeros.
+TransformedSurface SurfaceEncoder::transform(std::span<const float> samples, unsigned channels,
+                                             unsigned first, const GluedBorder& border) const
+{
     std::vector<double> work(2 * classes_.size());
     TransformedSurface out;
     out.grid = grid_;
@@ -145,8 +154,9 @@ TransformedSurface SurfaceEncoder::transform(std::span<const float> samples) con
     std::vector<double> image(count), coarse;
     for (unsigned c = 0; c < kComponents; ++c) {
         image.resize(count);
-        for (std::size_t k = 0; k < count; ++k) image[k] = static_cast<double>(samples[kComponents * k + c]);
-        border.average(image.data(), grid_, work.data());
+        for (std::size_t k = 0; k < count; ++k)
+            image[k] = first + c < channels ? static_cast<double>(samples[channels * k + first + c]) : 0.0;
+        if (border.isGluedAt(grid_)) border.average(image.data(), grid_, work.data());
         const auto [least, most] = std::minmax_element(image.begin(), image.end());
         squaredDiagonal += (*most - *least) * (*most - *least);
         auto level = out.levels.rbegin();
@@ -199,8 +209,9 @@ CodedSurface SurfaceEncoder::encode(const TransformedSurface& surface,
             coarse.coarse[c][k] = std::llround(surface.coarse[c][k] / parameters.step);
     const auto models = std::make_unique<SurfaceModels>();
     RangeEncoder encoder;
-    ThriftyDetails pick(surface, parameters);
-    codeSurface(encoder, *models, parameters, border, coarse, memory.work, pick);
+    const SurfaceFrames frames(parameters);
+    ThriftyDetails pick(surface, frames);
+    codeSurface(encoder, *models, frames, border, coarse, memory.work, pick);
 
     CodedSurface out{encoder.finish(), {}};
     const std::size_t count = std::size_t{grid_} * grid_;
@@ -209,6 +220,64 @@ CodedSurface SurfaceEncoder::encode(const TransformedSurface& surface,
         for (std::size_t k = 0; k < count; ++k)
             out.decoded[kComponents * k + c] = static_cast<float>(memory.work.surface[c][k]);
     return out;
+}
+
+TransformedField SurfaceEncoder::transformField(std::span<const float> samples, unsigned channels,
+                                                bool glued) const
+{
+    std::vector<std::uint32_t> mates(classes_.size());
+    const GluedBorder border =
+        glued ? GluedBorder(view(), grid_, classes_.data(), mates.data()) : GluedBorder(grid_);
+    TransformedField out;
+    out.channels = channels;
+    out.glued = glued;
+    out.grid = grid_;
+    double squaredDiagonal = 0;
+    for (unsigned first = 0; first < channels; first += kComponents) {
+        const TransformedSurface& group =
+            out.groups.emplace_back(transform(samples, channels, first, border));
+        out.largest = std::max(out.largest, group.largest);
+        squaredDiagonal += group.diagonal * group.diagonal;
+    }
+    out.diagonal = std::sqrt(squaredDiagonal);
+    return out;
+}
+
+CodedField SurfaceEncoder::encodeField(const TransformedField& field, const FieldParameters& parameters) const
+{
+    std::vector<std::uint32_t> mates(classes_.size());
+    const GluedBorder border =
+        field.glued ? GluedBorder(view(), grid_, classes_.data(), mates.data()) : GluedBorder(grid_);
+    EncoderMemory memory(grid_);
+    const auto models = std::make_unique<SurfaceModels>();
+    RangeEncoder encoder;
+    const std::size_t count = std::size_t{grid_} * grid_;
+    CodedField out;
+    out.decoded.resize(field.channels * count);
+    unsigned first = 0;
+    for (const TransformedSurface& group : field.groups) {
+        const unsigned channels = std::min(kComponents, field.channels - first);
+        QuantizedImage coarse;
+        for (unsigned c = 0; c < channels; ++c)
+            for (unsigned k = 0; k < kCoarsest * kCoarsest; ++k)
+                coarse.coarse[c][k] = std::llround(group.coarse[c][k] / parameters.step);
+        const FieldFrames frames(parameters, channels);
+        ThriftyDetails pick(group, frames);
+        codeSurface(encoder, *models, frames, border, coarse, memory.work, pick);
+        for (unsigned c = 0; c < channels; ++c)
+            for (std::size_t k = 0; k < count; ++k)
+                out.decoded[field.channels * k + first + c] = static_cast<float>(memory.work.surface[c][k]);
+        first += channels;
+    }
+    out.payload = encoder.finish();
+    return out;
+}
+
+float smallestStep(const TransformedField& field)
+{
+    float least = field.finest;
+    for (const TransformedSurface& group : field.groups) least = std::max(least, smallestStep(group));
+    return least;
 }
 
 float smallestStep(const TransformedSurface& surface)

@@ -175,4 +175,28 @@ inline Frame frameAt(const double* const (&planes)[kComponents], const SurfaceLe
     return frame;
 }
 
+/// How codeLevel() is to code a surface: in frames of the prediction.
+class SurfaceFrames
+{
+public:
+    explicit SurfaceFrames(const SurfaceParameters& parameters) : parameters_(parameters) {}
+
+    static constexpr unsigned components() { return kComponents; }
+    double coarseStep() const { return parameters_.step; }
+    void begin(SurfaceLevel& level, const double* const (&prediction)[kComponents]) const
+    {
+        level.meanArea = meanCellArea(prediction, level.size);
+        level.largestRatio = largestTangentialRatio(parameters_, level.index);
+    }
+    Frame at(const double* const (&planes)[kComponents], const SurfaceLevel& level, unsigned orientation,
+             std::uint32_t i, std::uint32_t j) const
+    {
+        return frameAt(planes, level, parameters_, orientation, i, j);
+    }
+    static double bend(const Frame& frame, unsigned) { return frame.bend; }
+
+private:
+    SurfaceParameters parameters_;
+};
+
 } // namespace gimg::codec
