@@ -244,9 +244,10 @@ void codeImage(Coder& coder, CoefficientModels& models, QuantizedImage& image, P
 namespace detail {
 
 template <class Coder>
-void codeCoarse(Coder& coder, ExpGolombModels<kCoarseBits>& models, QuantizedImage& image)
+void codeCoarse(Coder& coder, ExpGolombModels<kCoarseBits>& models, QuantizedImage& image,
+                unsigned components = kComponents)
 {
-    for (unsigned c = 0; c < kComponents; ++c) {
+    for (unsigned c = 0; c < components; ++c) {
         for (unsigned k = 0; k < kCoarsest * kCoarsest; ++k) {
             std::int64_t& value = image.coarse[c][k];
             const std::int64_t expected =

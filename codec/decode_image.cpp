@@ -1,5 +1,7 @@
 #include "arena.h"
+#include "attribute_header.h"
 #include "detail_passes.h"
+#include "exact_decoder.h"
 #include "fuse.h"
 #include "image_header.h"
 #include "range_decoder.h"
@@ -9,17 +11,32 @@
 #include <cstring>
 #include <new>
 #include <type_traits>
-#include <zlib.h>
 
 namespace gimg::codec {
 
 namespace {
 
 constexpr double kLargestFloat = 3.4028234663852886e38;
-// zlib's inflate asks for its state and a 32 KiB window; variants of zlib for a little more.
-constexpr std::size_t kInflateMemory = std::size_t{1} << 17;
 
 bool isFinite(float value) { return value - value == 0.0f; }
+
+// Whether an image of this kind may have this coding.
+bool isCodingOf(ImageKind image, unsigned coding)
+{
+    switch (coding) {
+    case GIM_CODING_WAVELET:
+    case GIM_CODING_RAW12:
+        return image != ImageKind::Attribute;
+    case GIM_CODING_FLOAT:
+        return true;
+    case GIM_CODING_SURFACE:
+        return image == ImageKind::Geometry;
+    case GIM_CODING_FIELD:
+        return image != ImageKind::Geometry;
+    default:
+        return false;
+    }
+}
 
 bool stepInRange(float step) { return step >= kSmallestStep && step <= kLargestStep; }
 
@@ -114,13 +131,10 @@ struct SurfaceMemory
 };
 
 /// Details that were coded, as vectors.
-class CodedDetails
+template <class Frames> class CodedDetails
 {
 public:
-    CodedDetails(const SurfaceParameters& parameters, const DetailLevels& levels)
-        : parameters_(parameters), levels_(levels)
-    {
-    }
+    CodedDetails(const Frames& frames, const DetailLevels& levels) : frames_(frames), levels_(levels) {}
 
     bool begin(const SurfaceLevel& level, const double* const (&)[kComponents])
     {
@@ -142,7 +156,7 @@ public:
         const std::int32_t q[kComponents] = {here_->q[0][index], here_->q[1][index], here_->q[2][index]};
         Vector detail = {0, 0, 0};
         if (q[0] == 0 && q[1] == 0 && q[2] == 0) return detail;
-        const Frame frame = frameAt(prediction, level, parameters_, i, j);
+        const Frame frame = frames_.at(prediction, level, i, j);
         for (unsigned c = 0; c < kComponents; ++c) {
             if (q[c] == 0) continue;
             const double steps = q[c] < 0 ? q[c] - middle_ : q[c] + middle_;
@@ -152,7 +166,7 @@ public:
     }
 
 private:
-    const SurfaceParameters& parameters_;
+    const Frames& frames_;
     const DetailLevels& levels_;
     const DetailLevel* here_ = nullptr;
     double middle_ = 0;
@@ -175,12 +189,12 @@ ReadStatus decodeSurface(const ImageHeader& header, const SeamView& seam, const 
     new (memory.models) DetailModels();
     RangeDecoder decoder(header.samples, header.isPrefix);
     QuantizedImage coarse;
-    codeSurface(decoder, *memory.models, border, coarse, memory.levels, 0, NoDetails());
+    codeDetails(decoder, *memory.models, border, kComponents, coarse, memory.levels, 0, NoDetails());
     if (!header.isPrefix && !decoder.finished()) return ReadStatus::Corrupt;
     if (header.isPrefix && decoder.failed() && !decoder.hasEnded()) return ReadStatus::Corrupt;
-    const SurfaceParameters parameters = surfaceParameters(header);
-    CodedDetails details(parameters, memory.levels);
-    buildSurface(parameters, border, coarse.coarse, memory.work, details);
+    const SurfaceFrames frames(surfaceParameters(header));
+    CodedDetails details(frames, memory.levels);
+    buildSurface(frames, border, coarse.coarse, memory.work, details);
     const std::size_t samples = samplesOf(header.grid);
     for (unsigned c = 0; c < kComponents; ++c)
         for (std::size_t k = 0; k < samples; ++k) {
@@ -191,90 +205,89 @@ ReadStatus decodeSurface(const ImageHeader& header, const SeamView& seam, const 
     return ReadStatus::Ok;
 }
 
-ReadStatus decodeRaw12(const ImageHeader& header, float* out)
+// Decodes a field's channels by threes.
+/// @param store  store(number of a sample's channel, value)
+template <class Store>
+ReadStatus decodeField(const ImageHeader& header, unsigned channels, bool glued, const SeamView& seam,
+                       const std::uint32_t* classes, Arena& arena, const Store& store)
 {
-    const std::uint8_t* bytes = header.samples.data;
+    SurfaceMemory memory;
+    if (!memory.take(arena, header.grid)) return ReadStatus::Misuse;
+    const GluedBorder border =
+        glued ? GluedBorder(seam, header.grid, classes, memory.mates) : GluedBorder(header.grid);
+    new (memory.models) DetailModels();
+    RangeDecoder decoder(header.samples);
+    const FieldParameters parameters = fieldParameters(header);
+    const std::size_t samples = samplesOf(header.grid);
+    for (unsigned first = 0; first < channels; first += kComponents) {
+        const unsigned count = channels - first < kComponents ? channels - first : kComponents;
+        QuantizedImage coarse;
+        if (first > 0) memory.levels.clear();
+        codeDetails(decoder, *memory.models, border, count, coarse, memory.levels, 0, NoDetails());
+        if (decoder.failed()) return ReadStatus::Corrupt;
+        const FieldFrames frames(parameters, count);
+        CodedDetails details(frames, memory.levels);
+        buildSurface(frames, border, coarse.coarse, memory.work, details);
+        for (unsigned c = 0; c < count; ++c)
+            for (std::size_t k = 0; k < samples; ++k) {
+                const double value = memory.work.surface[c][k];
+                if (!(value <= kLargestFloat && value >= -kLargestFloat)) return ReadStatus::Corrupt;
+                store(channels * k + first + c, value);
+            }
+    }
+    return decoder.finished() ? ReadStatus::Ok : ReadStatus::Corrupt;
+}
+
+/// The integer nearest to a number, halves upwards, of those that the type holds.
+template <class Integer> Integer nearestOf(double value)
+{
+    constexpr Integer most = static_cast<Integer>(~Integer{0});
+    if (!(value > 0)) return 0;
+    if (value >= most) return most;
+    return static_cast<Integer>(static_cast<std::uint32_t>(value + 0.5));
+}
+
+ExactFormat exactFormatOf(const ImageHeader& header)
+{
+    return {header.grid, kComponents, header.coding == GIM_CODING_RAW12 ? kCubeBits : 0};
+}
+
+ExactFormat exactFormatOf(const AttributeHeader& header)
+{
+    return {header.image.grid, header.channels,
+            header.type == GIM_U8    ? 8u
+            : header.type == GIM_U16 ? 16u
+                                     : 0u};
+}
+
+template <class Integer>
+ReadStatus decodeIntegers(const AttributeHeader& header, const SeamView& seam, const std::uint32_t* classes,
+                          Arena& arena, Integer* out)
+{
+    if (header.image.coding == GIM_CODING_FIELD)
+        return decodeField(header.image, header.channels, header.glued, seam, classes, arena,
+                           [out](std::size_t k, double value) { out[k] = nearestOf<Integer>(value); });
+    const std::size_t count = header.channels * samplesOf(header.image.grid);
+    auto* floats = arena.take<float>(count);
+    if (floats == nullptr) return ReadStatus::Misuse;
+    const ReadStatus status = decodeExact(header.image.samples, exactFormatOf(header),
+                                          header.glued ? classes : nullptr, arena, floats);
+    if (status != ReadStatus::Ok) return status;
+    for (std::size_t k = 0; k < count; ++k) out[k] = static_cast<Integer>(floats[k]);
+    return ReadStatus::Ok;
+}
+
+// Gives 12-bit integers their place in space.
+ReadStatus placeInCube(const ImageHeader& header, float* out)
+{
     const std::size_t count = kComponents * samplesOf(header.grid);
     for (std::size_t k = 0; k < count; ++k) {
-        const std::uint8_t* pair = bytes + k / 2 * 3;
-        const std::uint32_t q = k % 2 == 0 ? pair[0] | (pair[1] & 0x0Fu) << 8 : pair[1] >> 4 | pair[2] << 4;
-        const double value =
-            static_cast<double>(header.least[k % kComponents]) + q * static_cast<double>(header.step);
+        const double value = static_cast<double>(header.least[k % kComponents]) +
+                             static_cast<double>(out[k]) * static_cast<double>(header.step);
         if (!(value <= kLargestFloat && value >= -kLargestFloat)) return ReadStatus::Corrupt;
         out[k] = static_cast<float>(value);
     }
-    // The count is odd, so half a byte is left over.
-    if (bytes[header.samples.size - 1] >> 4 != 0) return ReadStatus::Corrupt;
     return ReadStatus::Ok;
-}
-
-void* takeForZlib(void* arena, unsigned items, unsigned size)
-{
-    return static_cast<Arena*>(arena)->take<unsigned char>(std::size_t{items} * size);
-}
-
-void leaveToArena(void*, void*) {}
-
-// Inflates into exactly `size` bytes.
-ReadStatus inflateExactly(format::ByteSpan packed, std::uint8_t* out, std::size_t size, Arena& arena)
-{
-    void* memory = arena.take<unsigned char>(kInflateMemory);
-    if (memory == nullptr) return ReadStatus::Misuse;
-    Arena pool(memory, kInflateMemory);
-    z_stream stream;
-    std::memset(&stream, 0, sizeof stream);
-    stream.zalloc = takeForZlib;
-    stream.zfree = leaveToArena;
-    stream.opaque = &pool;
-    if (inflateInit(&stream) != Z_OK) return ReadStatus::Misuse;
-    stream.next_in = const_cast<Bytef*>(packed.data);
-    stream.avail_in = static_cast<uInt>(packed.size);
-    stream.next_out = out;
-    stream.avail_out = static_cast<uInt>(size);
-    const int status = inflate(&stream, Z_FINISH);
-    const bool exact = status == Z_STREAM_END && stream.avail_out == 0 && stream.avail_in == 0;
-    inflateEnd(&stream);
-    return exact ? ReadStatus::Ok : ReadStatus::Corrupt;
-}
-
-// A float's bits are coded as the difference from the sample before in the row (or, at its beginning,
-// from the row below), the sign moved to the lowest bit; then bytes of equal rank lie together.
-ReadStatus decodeFloat(const ImageHeader& header, Arena& arena, float* out)
-{
-    const std::uint32_t grid = header.grid;
-    const std::size_t samples = samplesOf(grid);
-    auto* planes = arena.take<std::uint8_t>(4 * kComponents * samples);
-    if (planes == nullptr) return ReadStatus::Misuse;
-    const ReadStatus status = inflateExactly(header.samples, planes, 4 * kComponents * samples, arena);
-    if (status != ReadStatus::Ok) return status;
-    for (unsigned c = 0; c < kComponents; ++c) {
-        const std::uint8_t* plane = planes + 4 * c * samples;
-        for (std::size_t k = 0; k < samples; ++k) {
-            const std::uint32_t coded = plane[k] | std::uint32_t{plane[samples + k]} << 8 |
-                                        std::uint32_t{plane[2 * samples + k]} << 16 |
-                                        std::uint32_t{plane[3 * samples + k]} << 24;
-            const std::uint32_t difference = coded >> 1 ^ (~(coded & 1u) + 1u);
-            std::uint32_t bits = 0;
-            if (k > 0)
-                std::memcpy(&bits, &out[kComponents * (k % grid == 0 ? k - grid : k - 1) + c], sizeof bits);
-            bits += difference;
-            std::memcpy(&out[kComponents * k + c], &bits, sizeof bits);
-            if ((bits >> 23 & 0xFFu) == 0xFFu) return ReadStatus::Corrupt;
-        }
-    }
-    return ReadStatus::Ok;
-}
-
-// In the raw codings glued samples agree already if the encoder was given a closed surface; taking the
-// first of each class leaves such samples alone to the bit, and closes the others.
-void copyFirstOfClass(float* out, std::uint32_t grid, const std::uint32_t* classes)
-{
-    for (std::uint32_t k = 0; k < borderSize(grid); ++k) {
-        if (classes[k] == k) continue;
-        std::memcpy(&out[kComponents * std::size_t{borderSample(grid, k)}],
-                    &out[kComponents * std::size_t{borderSample(grid, classes[k])}],
-                    kComponents * sizeof *out);
-    }
 }
 
 } // namespace
@@ -290,6 +303,15 @@ SurfaceParameters surfaceParameters(const ImageHeader& header)
     return parameters;
 }
 
+FieldParameters fieldParameters(const ImageHeader& header)
+{
+    FieldParameters parameters;
+    parameters.step = static_cast<double>(header.step);
+    parameters.axes = static_cast<FieldAxes>(header.axes & 0x0Fu);
+    parameters.ratio = powerOfQuarters(2 * (header.axes >> 4));
+    return parameters;
+}
+
 ReadStatus readImageHeader(format::ByteSpan content, ImageKind image, ImageHeader* header)
 {
     // The chunk is known to be complete: what is missing inside it is an error of its own.
@@ -297,8 +319,7 @@ ReadStatus readImageHeader(format::ByteSpan content, ImageKind image, ImageHeade
     const std::uint8_t kind = in.u8();
     if (in.failed()) return ReadStatus::Corrupt;
     const unsigned exponent = kind & 0x0Fu, coding = kind >> 4 & 0x07u;
-    if (kind >> 7 != 0 || coding > GIM_CODING_SURFACE) return ReadStatus::Unsupported;
-    if (coding == GIM_CODING_SURFACE && image != ImageKind::Geometry) return ReadStatus::Unsupported;
+    if (kind >> 7 != 0 || !isCodingOf(image, coding)) return ReadStatus::Unsupported;
     if (exponent == 0 || exponent > kLargestExponent) return ReadStatus::Unsupported;
     header->grid = (1u << exponent) + 1;
     header->coding = static_cast<gim_coding>(coding);
@@ -309,6 +330,11 @@ ReadStatus readImageHeader(format::ByteSpan content, ImageKind image, ImageHeade
         header->step = in.f32();
         header->ratios = in.u8();
         header->limits = in.u8();
+    } else if (header->coding == GIM_CODING_FIELD) {
+        header->step = in.f32();
+        header->axes = in.u8();
+        if (!in.failed() && (header->axes & 0x0Fu) > static_cast<unsigned>(FieldAxes::Radial))
+            return ReadStatus::Unsupported;
     } else if (header->coding == GIM_CODING_RAW12) {
         for (float& least : header->least) least = in.f32();
         header->step = in.f32();
@@ -319,8 +345,6 @@ ReadStatus readImageHeader(format::ByteSpan content, ImageKind image, ImageHeade
         if (!isFinite(least)) return ReadStatus::Corrupt;
     header->fixedBytes = in.offset();
     header->samples = in.span(in.remaining());
-    if (header->coding == GIM_CODING_RAW12 && header->samples.size != raw12Size(header->grid))
-        return ReadStatus::Corrupt;
     return ReadStatus::Ok;
 }
 
@@ -348,11 +372,10 @@ ReadStatus decodeCoefficients(const ImageHeader& header, Arena& arena, Quantized
 std::uint64_t imageWorkspace(const ImageHeader& header)
 {
     const std::size_t samples = samplesOf(header.grid);
-    if (header.coding == GIM_CODING_RAW12) return 0;
-    if (header.coding == GIM_CODING_FLOAT)
-        return Arena::sizeOf<std::uint8_t>(4 * kComponents * samples) +
-               Arena::sizeOf<std::uint8_t>(kInflateMemory);
-    if (header.coding == GIM_CODING_SURFACE) return SurfaceMemory::size(header.grid);
+    if (header.coding == GIM_CODING_RAW12 || header.coding == GIM_CODING_FLOAT)
+        return exactWorkspace(exactFormatOf(header));
+    if (header.coding == GIM_CODING_SURFACE || header.coding == GIM_CODING_FIELD)
+        return SurfaceMemory::size(header.grid);
     return kComponents * Arena::sizeOf<std::int32_t>(samples) +
            Arena::sizeOf<std::int32_t>(rowScratchOf(header.grid)) + Arena::sizeOf<CoefficientModels>(1) +
            Arena::sizeOf<double>(samples) + Arena::sizeOf<double>(coarseSamplesOf(header.grid)) +
@@ -363,13 +386,43 @@ ReadStatus decodeImage(const ImageHeader& header, const SeamView& seam, const st
                        std::uint32_t flags, Arena& arena, float* out)
 {
     if (header.coding == GIM_CODING_SURFACE) return decodeSurface(header, seam, classes, arena, out);
-    if ((flags & GIM_NO_FUSE) != 0) classes = nullptr;
-    if (header.coding == GIM_CODING_WAVELET)
+    if (header.coding == GIM_CODING_FIELD)
+        return decodeField(header, kComponents, true, seam, classes, arena,
+                           [out](std::size_t k, double value) { out[k] = static_cast<float>(value); });
+    if (header.coding == GIM_CODING_WAVELET) {
+        if ((flags & GIM_NO_FUSE) != 0) classes = nullptr;
         return decodeWavelet(header, classes, (flags & GIM_NO_DIFFUSE) == 0, arena, out);
-    const ReadStatus status =
-        header.coding == GIM_CODING_RAW12 ? decodeRaw12(header, out) : decodeFloat(header, arena, out);
-    if (status == ReadStatus::Ok && classes != nullptr) copyFirstOfClass(out, header.grid, classes);
-    return status;
+    }
+    const ReadStatus status = decodeExact(header.samples, exactFormatOf(header), classes, arena, out);
+    if (status != ReadStatus::Ok || header.coding == GIM_CODING_FLOAT) return status;
+    return placeInCube(header, out);
+}
+
+std::uint64_t attributeWorkspace(const AttributeHeader& header)
+{
+    if (header.image.coding == GIM_CODING_FIELD) return imageWorkspace(header.image);
+    const std::uint64_t floats =
+        header.type == GIM_F32 ? 0 : Arena::sizeOf<float>(header.channels * samplesOf(header.image.grid));
+    return exactWorkspace(exactFormatOf(header)) + floats;
+}
+
+ReadStatus decodeAttribute(const AttributeHeader& header, const SeamView& seam, const std::uint32_t* classes,
+                           Arena& arena, void* out)
+{
+    switch (header.type) {
+    case GIM_U8:
+        return decodeIntegers(header, seam, classes, arena, static_cast<std::uint8_t*>(out));
+    case GIM_U16:
+        return decodeIntegers(header, seam, classes, arena, static_cast<std::uint16_t*>(out));
+    default:
+        break;
+    }
+    auto* floats = static_cast<float*>(out);
+    if (header.image.coding == GIM_CODING_FIELD)
+        return decodeField(header.image, header.channels, header.glued, seam, classes, arena,
+                           [floats](std::size_t k, double value) { floats[k] = static_cast<float>(value); });
+    return decodeExact(header.image.samples, exactFormatOf(header), header.glued ? classes : nullptr, arena,
+                       floats);
 }
 
 void normalize(float* vectors, std::size_t count)

@@ -52,6 +52,21 @@ struct DetailLevels
             made.blocks = BlockMap(flags, n);
         }
     }
+
+    /// Back to zeros, of which nothing is known.
+    void clear()
+    {
+        for (unsigned l = 0; l < count; ++l) {
+            DetailLevel& cleared = level[l];
+            for (unsigned c = 0; c < kComponents; ++c) {
+                std::memset(cleared.q[c], 0, codedSize(cleared.size) * sizeof *cleared.q[c]);
+                std::memset(cleared.known[c], 0, codedSize(cleared.size));
+            }
+            cleared.blocks.clear();
+            cleared.missing = 0;
+            cleared.isFilled = false;
+        }
+    }
 };
 
 /// The positions of an orientation's band in a level.

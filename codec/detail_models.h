@@ -13,6 +13,7 @@ constexpr unsigned kSizes = 4; ///< classes of magnitudes that are refined
 /// Models of the bits of details.
 struct DetailModels
 {
+    ExpGolombModels<kCoarseBits> coarse;
     BitModel levelIsEmpty[kLevels];
     BitModel blockByLevel[kDirections][2][kLevels][9];
     BitModel blockByParents[kDirections][2][9][14];

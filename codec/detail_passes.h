@@ -8,20 +8,21 @@ namespace gimg::codec {
 /// @param whole  see codePass()
 /// @return false: the bytes have ended
 template <class Coder, class Whole>
-bool codeBlocks(Coder& coder, DetailModels& models, DetailLevels& levels, unsigned l, unsigned pass,
-                const Whole& whole)
+bool codeBlocks(Coder& coder, DetailModels& models, DetailLevels& levels, unsigned components, unsigned l,
+                unsigned pass, const Whole& whole)
 {
     constexpr int kHalf = BlockMap::kBlock / 2;
+    const unsigned directions = components == 1 ? 1 : kDirections;
     BlockMap& blocks = levels.level[l].blocks;
     const std::uint32_t m = levels.level[l].size / 2 + 1;
     const auto row = static_cast<std::ptrdiff_t>(codedPitch(m));
     for (std::uint32_t bj = 0; bj < blocks.side(); ++bj)
         for (std::uint32_t bi = 0; bi < blocks.side(); ++bi) {
-            if (blocks.isFilled(bi, bj, 0) && blocks.isFilled(bi, bj, 1)) continue;
+            if (blocks.isFilled(bi, bj, 0) && (directions == 1 || blocks.isFilled(bi, bj, 1))) continue;
             // The coarser level's details below the block, and those one further.
             unsigned below[kDirections] = {}, ring[kDirections] = {};
             if (l > 0)
-                for (unsigned c = 0; c < kComponents; ++c) {
+                for (unsigned c = 0; c < components; ++c) {
                     const std::uint8_t* corner =
                         levels.level[l - 1].known[c] + codedIndex(m, bi * kHalf, bj * kHalf);
                     for (int dj = -2; dj <= kHalf + 2; ++dj)
@@ -31,7 +32,7 @@ bool codeBlocks(Coder& coder, DetailModels& models, DetailLevels& levels, unsign
                         }
                 }
             unsigned before = 0;
-            for (unsigned d = 0; d < kDirections; ++d) {
+            for (unsigned d = 0; d < directions; ++d) {
                 if (!blocks.isFilled(bi, bj, d)) {
                     const unsigned around = blocks.around(bi, bj, d);
                     const unsigned b = quickClass<13>(below[d]), r = quickClass<13>(ring[d]);
@@ -61,7 +62,7 @@ bool codeBlocks(Coder& coder, DetailModels& models, DetailLevels& levels, unsign
 /// @return false: the bytes have ended, and what was not read whole is left as it was
 template <class Coder, class Whole>
 bool codePass(Coder& coder, DetailModels& models, DetailLevels& levels, const GluedBorder& border,
-              unsigned pass, const Whole& whole)
+              unsigned components, unsigned pass, const Whole& whole)
 {
     for (unsigned l = 0; l < levels.count; ++l) {
         DetailLevel& level = levels.level[l];
@@ -77,7 +78,7 @@ bool codePass(Coder& coder, DetailModels& models, DetailLevels& levels, const Gl
             if (empty) continue;
             level.isFilled = true;
         }
-        if (!codeBlocks(coder, models, levels, l, pass, whole)) return false;
+        if (!codeBlocks(coder, models, levels, components, l, pass, whole)) return false;
 
         const DetailLevel* coarser = l > 0 ? &levels.level[l - 1] : nullptr;
         const DetailLevel* finer =
@@ -95,7 +96,7 @@ bool codePass(Coder& coder, DetailModels& models, DetailLevels& levels, const Gl
             const std::size_t children = codedIndex(2 * n - 1, i / 2 * 4 + i % 2, j / 2 * 4 + j % 2);
             place.orientation = orientation;
             for (unsigned c = 0; c < kComponents; ++c) place.known[c] = level.known[c] + index;
-            for (unsigned c = 0; c < kComponents; ++c) {
+            for (unsigned c = 0; c < components; ++c) {
                 if (!level.blocks.isFilled(bi, bj, c == 0 ? 0 : 1)) continue;
                 place.parent = coarser == nullptr ? nullptr : coarser->known[c] + parent;
                 place.children = finer == nullptr ? nullptr : finer->known[c] + children;
@@ -137,19 +138,19 @@ bool codePass(Coder& coder, DetailModels& models, DetailLevels& levels, const Gl
     return true;
 }
 
-/// Codes a surface's quantised details, after its coarse image.
+/// Codes the quantised details of a surface, or of up to three channels of a field, after their coarse image.
+/// @param levels  all zero
 /// @param passes  how many there are: the bits of the largest magnitude; of encoders
 /// Failure shows in the coder.
 template <class Coder, class Whole>
-void codeSurface(Coder& coder, DetailModels& models, const GluedBorder& border, QuantizedImage& coarse,
-                 DetailLevels& levels, unsigned passes, const Whole& whole)
+void codeDetails(Coder& coder, DetailModels& models, const GluedBorder& border, unsigned components,
+                 QuantizedImage& coarse, DetailLevels& levels, unsigned passes, const Whole& whole)
 {
     passes = coder.raw(5, passes);
     if (passes > kDetailBits) return coder.fail();
-    ExpGolombModels<kCoarseBits> coarseModels;
-    detail::codeCoarse(coder, coarseModels, coarse);
+    detail::codeCoarse(coder, models.coarse, coarse, components);
     while (passes > 0 && !coder.failed() && !coder.hasEnded())
-        if (!codePass(coder, models, levels, border, --passes, whole)) return;
+        if (!codePass(coder, models, levels, border, components, --passes, whole)) return;
 }
 
 } // namespace gimg::codec

@@ -1,14 +1,11 @@
 #include "encode.h"
 
-#include "border.h"
+#include "field_set.h"
 #include "format/container.h"
 #include "format/writer.h"
+#include "image_content.h"
 #include "image_header.h"
-
-#include <algorithm>
-#include <cmath>
-#include <functional>
-#include <zlib.h>
+#include "step_search.h"
 
 namespace gimg::codec {
 
@@ -16,49 +13,7 @@ namespace {
 
 using Bytes = std::vector<std::uint8_t>;
 
-/// Steps finer than this part of the diagonal spend bytes on the noise of float32 samples.
-constexpr double kFinestPart = 0x1p-21;
-constexpr double kNormalShare = 0.25;
-constexpr double kLargestCoefficient = static_cast<double>(kLargestStep) / 4;
-
 EncodeError badSource(std::string message) { return {EncodeError::Kind::BadSource, std::move(message), 0}; }
-
-unsigned exponentOf(std::uint32_t grid) { return log2Floor(grid - 1); }
-
-bool isGridSize(std::uint32_t n)
-{
-    return n >= 3 && n <= (1u << kLargestExponent) + 1 && ((n - 1) & (n - 2)) == 0;
-}
-
-std::string imageFault(const char* name, std::span<const float> samples, std::uint32_t grid,
-                       std::uint32_t lowest)
-{
-    const std::string what = name;
-    if (!isGridSize(grid)) return what + ": the grid is not 2^j + 1 samples a side with j in 1..12";
-    if (grid < lowest) return what + ": the grid is smaller than the lowest level";
-    if (samples.size() != std::size_t{grid} * grid * kComponents)
-        return what + ": the number of samples does not fit the grid";
-    const auto bad =
-        std::find_if(samples.begin(), samples.end(), [](float value) { return !std::isfinite(value); });
-    if (bad != samples.end())
-        return what + ": sample " + std::to_string((bad - samples.begin()) / 3) + " is not finite";
-    return {};
-}
-
-Bytes imageContent(std::uint32_t grid, gim_coding coding)
-{
-    return {static_cast<std::uint8_t>(exponentOf(grid) | static_cast<unsigned>(coding) << 4)};
-}
-
-Bytes waveletContent(const TransformedImage& image, float step)
-{
-    const CodedImage coded = encodeCoefficients(image, step);
-    Bytes content = imageContent(image.grid, GIM_CODING_WAVELET);
-    format::appendF32(content, step);
-    content.push_back(coded.shifts);
-    for (const std::uint8_t byte : coded.payload) content.push_back(byte);
-    return content;
-}
 
 // Tangential steps grow by three quarters of an octave a level where the surface is flat enough, to eight
 // times the normal ones; those of small and large cells differ by at most 1.25. Found by trial on scanned and
@@ -86,207 +41,49 @@ Bytes surfaceContent(const SurfaceEncoder& encoder, const TransformedSurface& su
     return content;
 }
 
-struct Raw12
+Bytes assemble(std::uint32_t lowest, const Bytes& word, const Bytes& geometry,
+               const std::vector<FieldSet::Chunk>& fields)
 {
-    Bytes content; ///< empty if the samples are too far apart
-    float step = 0;
-};
-
-Raw12 raw12Content(std::span<const float> samples, std::uint32_t grid)
-{
-    float least[kComponents], most[kComponents];
-    for (unsigned c = 0; c < kComponents; ++c) least[c] = most[c] = samples[c];
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-        const std::size_t c = k % kComponents;
-        least[c] = std::min(least[c], samples[k]);
-        most[c] = std::max(most[c], samples[k]);
-    }
-    double side = 0;
-    for (unsigned c = 0; c < kComponents; ++c)
-        side = std::max(side, static_cast<double>(most[c]) - static_cast<double>(least[c]));
-    Raw12 out;
-    out.step = std::max(static_cast<float>(side / 4095), kSmallestStep);
-    if (out.step > kLargestStep) return {};
-    out.content = imageContent(grid, GIM_CODING_RAW12);
-    for (const float value : least) format::appendF32(out.content, value);
-    format::appendF32(out.content, out.step);
-    std::uint32_t bits = 0;
-    unsigned count = 0;
-    for (std::size_t k = 0; k < samples.size(); ++k) {
-        const double offset = static_cast<double>(samples[k]) - static_cast<double>(least[k % kComponents]);
-        const auto q = static_cast<std::uint32_t>(
-            std::clamp(std::lround(offset / static_cast<double>(out.step)), 0l, 4095l));
-        bits |= q << count;
-        for (count += 12; count >= 8; count -= 8, bits >>= 8)
-            out.content.push_back(static_cast<std::uint8_t>(bits));
-    }
-    if (count > 0) out.content.push_back(static_cast<std::uint8_t>(bits));
-    return out;
-}
-
-std::uint32_t bitsOf(float value)
-{
-    std::uint32_t bits;
-    std::memcpy(&bits, &value, sizeof bits);
-    return bits;
-}
-
-Bytes floatContent(std::span<const float> samples, std::uint32_t grid)
-{
-    const std::size_t count = std::size_t{grid} * grid;
-    Bytes planes(4 * samples.size());
-    for (unsigned c = 0; c < kComponents; ++c)
-        for (std::size_t k = 0; k < count; ++k) {
-            const std::uint32_t before =
-                k == 0 ? 0 : bitsOf(samples[kComponents * (k % grid == 0 ? k - grid : k - 1) + c]);
-            const std::uint32_t difference = bitsOf(samples[kComponents * k + c]) - before;
-            const std::uint32_t coded = difference << 1 ^ ((difference >> 31) != 0 ? 0xFFFFFFFFu : 0u);
-            for (unsigned b = 0; b < 4; ++b)
-                planes[(4 * c + b) * count + k] = static_cast<std::uint8_t>(coded >> 8 * b);
-        }
-    Bytes content = imageContent(grid, GIM_CODING_FLOAT);
-    uLongf packed = compressBound(static_cast<uLong>(planes.size()));
-    content.resize(1 + packed);
-    compress2(content.data() + 1, &packed, planes.data(), static_cast<uLong>(planes.size()),
-              Z_BEST_COMPRESSION);
-    content.resize(1 + packed);
-    return content;
-}
-
-Bytes assemble(std::uint32_t lowest, const Bytes& word, const Bytes& geometry, const Bytes* normals)
-{
-    Bytes seam(1 + word.size(), static_cast<std::uint8_t>(exponentOf(lowest)));
+    Bytes seam(1 + word.size(), static_cast<std::uint8_t>(log2Floor(lowest - 1)));
     std::copy(word.begin(), word.end(), seam.begin() + 1);
     format::Writer writer;
     writer.addChunk(format::kSeamChunk, seam);
     writer.addChunk(format::kGeometryChunk, geometry);
-    if (normals != nullptr) writer.addChunk(format::kNormalChunk, *normals);
+    for (const FieldSet::Chunk& field : fields) writer.addChunk(field.type, field.content);
     return writer.finish();
 }
 
-struct Candidate
+// Of the normals, which come first; 0 without.
+float normalStepOf(const std::vector<FieldSet::Chunk>& fields)
 {
-    Bytes content;
-    float step = 0;
-};
-
-/// TransformedImage or TransformedSurface.
-template <class Image> std::string stepFault(const Image& image, float step, const char* name)
-{
-    if (image.largest > kLargestCoefficient) return "the samples are too large for wavelet coding";
-    if (!(step > 0) || step > kLargestStep) return std::string(name) + " is not a positive number in range";
-    if (step < smallestStep(image)) return std::string(name) + " is too small for these samples";
-    return {};
-}
-
-struct StepRange
-{
-    float finest = 0, coarsest = 0;
-};
-
-template <class Image> StepRange sensibleSteps(const Image& image)
-{
-    const float least = smallestStep(image);
-    const float finest = std::max(least, static_cast<float>(image.diagonal * kFinestPart));
-    // A step twice as large as any coefficient leaves nothing to code.
-    const float coarsest = std::clamp(static_cast<float>(2.1 * image.largest), finest, kLargestStep);
-    return {finest, coarsest};
-}
-
-/// The finest coding whose chunk takes at most `target` bytes, found by closing in on the step.
-/// @param contentAt  the chunk's content for a step
-/// Size falls nearly linearly with the logarithm of the step over small ranges, so secants are tried
-/// first, and halving where they are slow.
-template <class Image, class ContentAt>
-std::variant<Candidate, EncodeError> searchStep(const Image& image, const ContentAt& contentAt,
-                                                std::size_t target)
-{
-    const auto attempt = [&](float step) { return Candidate{contentAt(step), step}; };
-    const auto sizeOf = [](const Candidate& candidate) {
-        return format::chunkSize(candidate.content.size());
-    };
-    const StepRange range = sensibleSteps(image);
-    if (image.largest > kLargestCoefficient)
-        return EncodeError{EncodeError::Kind::BadSettings, "the samples are too large for wavelet coding", 0};
-
-    Candidate best = attempt(range.coarsest);
-    std::size_t bestSize = sizeOf(best);
-    if (bestSize > target) return EncodeError{EncodeError::Kind::TooSmall, {}, bestSize};
-
-    // Halve from a likely step until the target is bracketed: `high` is too many bytes, `low` is not.
-    double lowStep = std::log2(static_cast<double>(range.coarsest)), highStep = 0;
-    std::size_t lowSize = bestSize, highSize = 0;
-    double guess = std::log2(static_cast<double>(range.coarsest)) - 4;
-    const double floor = std::log2(static_cast<double>(range.finest));
-    for (double stride = 2; highSize == 0;) {
-        const bool atFloor = guess <= floor;
-        Candidate candidate = attempt(atFloor ? range.finest : static_cast<float>(std::exp2(guess)));
-        const std::size_t size = sizeOf(candidate);
-        if (size > target) {
-            highStep = std::log2(static_cast<double>(candidate.step));
-            highSize = size;
-            break;
-        }
-        lowStep = std::log2(static_cast<double>(candidate.step));
-        lowSize = size;
-        best = std::move(candidate);
-        bestSize = size;
-        if (atFloor) return EncodeError{EncodeError::Kind::TooLarge, {}, size};
-        guess -= stride;
-    }
-
-    const std::size_t close = target / 1000 + 1;
-    for (int round = 0; round < 40 && target - bestSize > close; ++round) {
-        double part = 0.5;
-        if (round % 3 != 2) {
-            const double wanted = static_cast<double>(target) - 0.4 * static_cast<double>(close);
-            // In logarithms of the sizes the curve is straighter still.
-            part = (std::log(wanted) - std::log(static_cast<double>(lowSize))) /
-                   (std::log(static_cast<double>(highSize)) - std::log(static_cast<double>(lowSize)));
-            part = std::clamp(part, 0.02, 0.98);
-        }
-        const auto step = static_cast<float>(std::exp2(lowStep + part * (highStep - lowStep)));
-        Candidate candidate = attempt(step);
-        const double exactStep = std::log2(static_cast<double>(step));
-        if (exactStep >= lowStep || exactStep <= highStep) break;
-        const std::size_t size = sizeOf(candidate);
-        if (size > target) {
-            highStep = exactStep;
-            highSize = size;
-            continue;
-        }
-        lowStep = exactStep;
-        lowSize = size;
-        if (size >= bestSize) {
-            best = std::move(candidate);
-            bestSize = size;
-        }
-    }
-    return best;
+    return !fields.empty() && fields.front().type == format::kNormalChunk ? fields.front().step : 0;
 }
 
 } // namespace
 
-Encoder::Encoder(const Source& source)
+Encoder::Encoder(const Source& source, std::shared_ptr<const FieldSet> fields)
     : seam_(source.seam), word_(encodeSeam(source.seam)), xyz_(source.xyz.begin(), source.xyz.end()),
-      normals_(source.normals.begin(), source.normals.end()),
       surfaceEncoder_(std::make_shared<SurfaceEncoder>(source.seam, source.grid)),
-      surface_(surfaceEncoder_->transform(xyz_))
+      surface_(surfaceEncoder_->transform(xyz_)), fields_(std::move(fields))
 {
-    if (source.normalGrid != 0) normalImage_ = codec::transform(source.normals, source.normalGrid);
 }
 
 Outcome<Encoder> Encoder::prepare(const Source& source)
 {
     if (std::string fault = seamFault(source.seam); !fault.empty()) return badSource("seam: " + fault);
-    if (std::string fault = imageFault("geometry", source.xyz, source.grid, source.seam.lowest);
+    if (std::string fault = imageFault("geometry", source.xyz, source.grid, source.seam.lowest, kComponents);
         !fault.empty())
         return badSource(fault);
-    if (source.normalGrid != 0)
-        if (std::string fault = imageFault("normals", source.normals, source.normalGrid, source.seam.lowest);
-            !fault.empty())
-            return badSource(fault);
-    return Encoder(source);
+    Outcome<FieldSet> fields = FieldSet::prepare(source);
+    if (EncodeError* error = std::get_if<EncodeError>(&fields)) return *error;
+    return Encoder(source, std::make_shared<const FieldSet>(std::move(std::get<FieldSet>(fields))));
+}
+
+Encoder Encoder::withFieldsOf(const Encoder& other) const
+{
+    Encoder out = *this;
+    out.fields_ = other.fields_;
+    return out;
 }
 
 Outcome<Encoder> Encoder::slid(float step, int rounds, double octaves, const Retarget& retarget) const
@@ -312,45 +109,40 @@ Outcome<EncodedFile> Encoder::encode(const Settings& settings) const
         return EncodeError{EncodeError::Kind::BadSettings, std::move(message), 0};
     };
     EncodedFile file;
-    Bytes content[2];
-    float written[2] = {settings.step, settings.normalStep};
-    const std::vector<float>* samples[2] = {&xyz_, &normals_};
-    const std::uint32_t grids[2] = {surface_.grid, normalImage_ ? normalImage_->grid : 0};
-    for (int k = 0; k < 2 && grids[k] != 0; ++k) {
-        const char* name = k == 0 ? "the step" : "the normals' step";
-        switch (settings.coding) {
-        case GIM_CODING_SURFACE:
-            if (k == 0) {
-                if (std::string fault = stepFault(surface_, settings.step, name); !fault.empty())
-                    return failed(fault);
-                content[0] = surfaceContent(*surfaceEncoder_, surface_, settings.step);
-                break;
-            }
-            [[fallthrough]];
-        case GIM_CODING_WAVELET: {
-            const TransformedImage image = k == 0 ? codec::transform(xyz_, surface_.grid) : *normalImage_;
-            if (std::string fault = stepFault(image, written[k], name); !fault.empty()) return failed(fault);
-            content[k] = waveletContent(image, written[k]);
-            break;
-        }
-        case GIM_CODING_RAW12: {
-            Raw12 raw = raw12Content(*samples[k], grids[k]);
-            if (raw.content.empty()) return failed("the samples are too large for 12-bit coding");
-            content[k] = std::move(raw.content);
-            written[k] = raw.step;
-            break;
-        }
-        case GIM_CODING_FLOAT:
-            content[k] = floatContent(*samples[k], grids[k]);
-            written[k] = 0;
-            break;
-        default:
-            return failed("no such coding");
-        }
+    file.step = settings.step;
+    Bytes geometry;
+    switch (settings.coding) {
+    case GIM_CODING_SURFACE:
+        if (std::string fault = stepFault(surface_, settings.step, "the step"); !fault.empty())
+            return failed(fault);
+        geometry = surfaceContent(*surfaceEncoder_, surface_, settings.step);
+        break;
+    case GIM_CODING_WAVELET: {
+        const TransformedImage image = codec::transform(xyz_, surface_.grid);
+        if (std::string fault = stepFault(image, settings.step, "the step"); !fault.empty())
+            return failed(fault);
+        geometry = waveletContent(image, settings.step);
+        break;
     }
-    file.step = written[0];
-    file.normalStep = normalImage_ ? written[1] : 0;
-    file.bytes = assemble(seam_.lowest, word_, content[0], normalImage_ ? &content[1] : nullptr);
+    case GIM_CODING_RAW12: {
+        IntegerContent integers = integerContent(xyz_, surface_.grid, seam_);
+        if (integers.content.empty()) return failed("the samples are too large for 12-bit coding");
+        geometry = std::move(integers.content);
+        file.step = integers.step;
+        break;
+    }
+    case GIM_CODING_FLOAT:
+        geometry = exactContent(xyz_, surface_.grid, GIM_CODING_FLOAT, {}, seam_);
+        file.step = 0;
+        break;
+    default:
+        return failed("no such coding");
+    }
+    const auto fields = fields_->encode(settings);
+    if (const EncodeError* error = std::get_if<EncodeError>(&fields)) return *error;
+    const auto& chunks = std::get<std::vector<FieldSet::Chunk>>(fields);
+    file.normalStep = normalStepOf(chunks);
+    file.bytes = assemble(seam_.lowest, word_, geometry, chunks);
     return file;
 }
 
@@ -368,25 +160,12 @@ Outcome<EncodedFile> Encoder::encodeToBytes(std::size_t target, gim_coding codin
         return error;
     };
     const std::size_t room = target > fixed ? target - fixed : 0;
+    const auto fields = fields_->encodeShares(room, coding);
+    if (const EncodeError* error = std::get_if<EncodeError>(&fields)) return *error;
+    const auto& chunks = std::get<std::vector<FieldSet::Chunk>>(fields);
+    const std::size_t fieldSize = FieldSet::sizeOf(chunks);
 
-    std::optional<Candidate> normals;
-    std::size_t normalSize = 0;
-    if (normalImage_) {
-        const auto share = static_cast<std::size_t>(static_cast<double>(room) * kNormalShare);
-        const auto contentAt = [&](float step) { return waveletContent(*normalImage_, step); };
-        auto found = searchStep(*normalImage_, contentAt, share);
-        if (EncodeError* error = std::get_if<EncodeError>(&found)) {
-            // A share that even the extreme steps do not meet is met as nearly as can be.
-            const StepRange range = sensibleSteps(*normalImage_);
-            const float step = error->kind == EncodeError::Kind::TooSmall ? range.coarsest : range.finest;
-            normals = Candidate{waveletContent(*normalImage_, step), step};
-        } else {
-            normals = std::move(std::get<Candidate>(found));
-        }
-        normalSize = format::chunkSize(normals->content.size());
-    }
-
-    const std::size_t left = room > normalSize ? room - normalSize : 0;
+    const std::size_t left = room > fieldSize ? room - fieldSize : 0;
     auto found = [&] {
         if (coding == GIM_CODING_SURFACE)
             return searchStep(
@@ -395,12 +174,12 @@ Outcome<EncodedFile> Encoder::encodeToBytes(std::size_t target, gim_coding codin
         return searchStep(
             image, [&](float step) { return waveletContent(image, step); }, left);
     }();
-    if (EncodeError* error = std::get_if<EncodeError>(&found)) return unreachable(*error, normalSize);
+    if (EncodeError* error = std::get_if<EncodeError>(&found)) return unreachable(*error, fieldSize);
     Candidate& geometry = std::get<Candidate>(found);
     EncodedFile file;
-    file.bytes = assemble(seam_.lowest, word_, geometry.content, normals ? &normals->content : nullptr);
+    file.bytes = assemble(seam_.lowest, word_, geometry.content, chunks);
     file.step = geometry.step;
-    file.normalStep = normals ? normals->step : 0.0f;
+    file.normalStep = normalStepOf(chunks);
     return file;
 }
 

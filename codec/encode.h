@@ -14,22 +14,39 @@
 
 namespace gimg::codec {
 
+/// An image of what is spread over the surface.
+struct AttributeSource
+{
+    std::string name; ///< 1 to 63 bytes of UTF-8 without control characters
+    std::uint32_t grid = 0;
+    unsigned channels = 0; ///< 1 to 16
+    gim_sample_type type = GIM_F32;
+    bool glued = true;       ///< whether glued samples agree; lossy coding averages them
+    bool normalized = false; ///< integers stand for fractions of the largest
+    bool lossless = false;
+    std::span<const float>
+        samples; ///< `channels` numbers for each sample; of integer types, integers in range
+};
+
 /// What is to be written. The spans must stay valid while an Encoder prepares them, no longer.
 struct Source
 {
     std::uint32_t grid = 0; ///< samples a side, 2^j + 1, 3 to 4097, at least seam.lowest
     Seam seam;
-    std::span<const float> xyz;     ///< 3 grid^2 numbers
-    std::uint32_t normalGrid = 0;   ///< 0: no normals; otherwise as grid
-    std::span<const float> normals; ///< 3 normalGrid^2 numbers, vectors of unit length
+    std::span<const float> xyz;              ///< 3 grid^2 numbers
+    std::uint32_t normalGrid = 0;            ///< 0: no normals; otherwise as grid
+    std::span<const float> normals;          ///< 3 normalGrid^2 numbers, vectors of unit length
+    std::vector<AttributeSource> attributes; ///< at most 16, no two of one name
 };
 
 struct Settings
 {
     gim_coding coding =
-        GIM_CODING_SURFACE; ///< of the geometry; normals that go with a surface are wavelet coded
-    float step = 0;         ///< surface, wavelet: quantisation step, in the surface's units
-    float normalStep = 0;   ///< the same for the normals, if there are any
+        GIM_CODING_SURFACE;          ///< of the geometry; normals that go with a surface are coded as a field
+    float step = 0;                  ///< surface, wavelet: quantisation step, in the surface's units
+    float normalStep = 0;            ///< the same for the normals, if there are any
+    float attributeStep = 1.0f / 64; ///< of lossy attributes, as a fraction of the span of their values; with
+                                     ///< raw geometry all attributes are lossless
 };
 
 /// Moves samples along the surface: it is given what a decoder will make of them, and changes the targets
@@ -59,6 +76,8 @@ struct EncodeError
 
 template <class T> using Outcome = std::variant<T, EncodeError>;
 
+class FieldSet;
+
 /// Holds a source after its forward transform, so that encoding at another step is quick.
 class Encoder
 {
@@ -72,14 +91,18 @@ public:
     /// The encoder of samples that have slid: `rounds` times the surface is coded at the step and its targets
     /// are moved. What slides along the surface need not be coded, so that a file of the same size comes
     /// nearer.
-    /// @param octaves  how much coarser the first round's step is; the more, the better for prefixes of the file
+    /// @param octaves  how much coarser the first round's step is; the more, the better for prefixes of the
+    /// file
     Outcome<Encoder> slid(float step, int rounds, double octaves, const Retarget& retarget) const;
 
     /// The best file of at most `target` bytes; at most max(1 %, 24 bytes) smaller.
     /// @param coding  of the geometry, surface or wavelet
-    /// Normals get a quarter of the bytes that are neither container nor seam.
+    /// Normals and attributes get the shares that FieldSet tells.
     /// TooSmall, TooLarge: see EncodeError.
     Outcome<EncodedFile> encodeToBytes(std::size_t target, gim_coding coding = GIM_CODING_SURFACE) const;
+
+    /// The same geometry with the normals and attributes of another encoder.
+    Encoder withFieldsOf(const Encoder& other) const;
 
     /// The geometry's samples, as given or slid.
     std::span<const float> samples() const { return xyz_; }
@@ -88,14 +111,14 @@ public:
     double diagonal() const { return surface_.diagonal; }
 
 private:
-    Encoder(const Source& source);
+    Encoder(const Source& source, std::shared_ptr<const FieldSet> fields);
 
     Seam seam_;
     std::vector<std::uint8_t> word_;
-    std::vector<float> xyz_, normals_;
+    std::vector<float> xyz_;
     std::shared_ptr<const SurfaceEncoder> surfaceEncoder_;
     TransformedSurface surface_;
-    std::optional<TransformedImage> normalImage_;
+    std::shared_ptr<const FieldSet> fields_;
 };
 
 } // namespace gimg::codec

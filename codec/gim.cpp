@@ -1,12 +1,15 @@
 #include "gim.h"
 
 #include "arena.h"
+#include "attribute_header.h"
 #include "border.h"
 #include "format/container.h"
 #include "image_header.h"
 #include "range_decoder.h"
 #include "seam_code.h"
 #include "triangulate.h"
+
+#include <cstring>
 
 namespace {
 
@@ -50,6 +53,9 @@ struct File
     ByteSpan word; ///< the coded seam
     ImageHeader geometry;
     ImageHeader normals; ///< grid 0: absent
+    AttributeHeader attributes[gimg::format::kMaxAttributes];
+    std::uint32_t attributeCount = 0;
+    std::uint32_t widest = 0; ///< samples a side of the largest image
     std::uint64_t workspace = 0;
 
     std::uint32_t maxSides() const
@@ -67,9 +73,8 @@ std::uint64_t workspaceOf(const File& file)
 {
     const std::size_t sides = file.maxSides();
     const std::uint32_t grid = file.geometry.grid;
-    const std::uint32_t widest = file.normals.grid > grid ? file.normals.grid : grid;
     const std::uint64_t seam = Arena::sizeOf<gim_side>(sides) + Arena::sizeOf<std::uint32_t>(2 * sides) +
-                               Arena::sizeOf<std::uint32_t>(borderSize(widest));
+                               Arena::sizeOf<std::uint32_t>(borderSize(file.widest));
     const std::uint64_t mesh = Arena::sizeOf<std::uint32_t>(borderSize(grid)) +
                                Arena::sizeOf<std::uint32_t>(std::size_t{grid} * grid);
     std::uint64_t most = mesh;
@@ -77,7 +82,27 @@ std::uint64_t workspaceOf(const File& file)
     const std::uint64_t normals = file.normals.grid != 0 ? imageWorkspace(file.normals) : 0;
     if (geometry > most) most = geometry;
     if (normals > most) most = normals;
+    for (std::uint32_t k = 0; k < file.attributeCount; ++k) {
+        const std::uint64_t attribute = attributeWorkspace(file.attributes[k]);
+        if (attribute > most) most = attribute;
+    }
     return seam + most + Arena::kAlignment;
+}
+
+bool areEqual(ByteSpan a, ByteSpan b) { return a.size == b.size && std::memcmp(a.data, b.data, a.size) == 0; }
+
+ReadStatus readAttributes(File* file)
+{
+    file->attributeCount = file->contents.attributeCount;
+    for (std::uint32_t k = 0; k < file->attributeCount; ++k) {
+        AttributeHeader& attribute = file->attributes[k];
+        const ReadStatus status = readAttributeHeader(file->contents.attributes[k].content, &attribute);
+        if (status != ReadStatus::Ok) return status;
+        for (std::uint32_t before = 0; before < k; ++before)
+            if (areEqual(file->attributes[before].name, attribute.name)) return ReadStatus::Corrupt;
+        if (attribute.image.grid > file->widest) file->widest = attribute.image.grid;
+    }
+    return ReadStatus::Ok;
 }
 
 /// @param allowPrefix  a file that is cut short will do, if its geometry can be decoded as far as it goes
@@ -100,6 +125,10 @@ ReadStatus openFile(const void* bytes, std::size_t size, const gim_limits* limit
         if (status != ReadStatus::Ok) return status;
     }
 
+    file->widest = file->normals.grid > file->geometry.grid ? file->normals.grid : file->geometry.grid;
+    status = readAttributes(file);
+    if (status != ReadStatus::Ok) return status;
+
     gimg::format::Reader in(file->contents.seam.content);
     const std::uint8_t exponent = in.u8();
     if (in.failed() || exponent == 0) return ReadStatus::Corrupt;
@@ -108,13 +137,14 @@ ReadStatus openFile(const void* bytes, std::size_t size, const gim_limits* limit
     file->word = in.span(in.remaining());
     if (file->lowest > file->geometry.grid) return ReadStatus::Corrupt;
     if (file->normals.grid != 0 && file->lowest > file->normals.grid) return ReadStatus::Corrupt;
+    for (std::uint32_t k = 0; k < file->attributeCount; ++k)
+        if (file->lowest > file->attributes[k].image.grid) return ReadStatus::Corrupt;
     for (std::uint32_t n = file->geometry.grid; n >= file->lowest; n = n / 2 + 1) {
         ++file->levels;
         if (n == 3) break;
     }
 
-    if (file->geometry.grid > file->limits.max_grid || file->normals.grid > file->limits.max_grid)
-        return ReadStatus::Limit;
+    if (file->widest > file->limits.max_grid) return ReadStatus::Limit;
     file->workspace = workspaceOf(*file);
     if (file->workspace > file->limits.max_workspace || file->workspace > SIZE_MAX) return ReadStatus::Limit;
     return ReadStatus::Ok;
@@ -230,8 +260,12 @@ gim_status gim_probe(const void* bytes, size_t size, const gim_limits* limits, g
     info->geometry_bytes = file.geometry.samples.size;
     info->normal_bytes = file.normals.samples.size;
     info->other_bytes = contents.otherBytes;
-    info->container_bytes =
-        size - info->seam_bytes - info->geometry_bytes - info->normal_bytes - info->other_bytes;
+    info->attributes = file.attributeCount;
+    info->attribute_bytes = 0;
+    for (std::uint32_t k = 0; k < file.attributeCount; ++k)
+        info->attribute_bytes += file.attributes[k].image.samples.size;
+    info->container_bytes = size - info->seam_bytes - info->geometry_bytes - info->normal_bytes -
+                            info->attribute_bytes - info->other_bytes;
     info->workspace = file.workspace;
     info->missing_bytes = contents.geometry.missing;
     return contents.isPrefix ? GIM_MORE_INPUT : GIM_OK;
@@ -308,6 +342,48 @@ gim_status gim_decode_normals(const void* bytes, size_t size, const gim_limits* 
     if (status == ReadStatus::Ok && file.normals.coding != GIM_CODING_FLOAT)
         normalize(normals, std::size_t{file.normals.grid} * file.normals.grid);
     return toPublic(status);
+}
+
+gim_status gim_read_attribute(const void* bytes, size_t size, const gim_limits* limits, uint32_t index,
+                              gim_attribute* out)
+{
+    if (out == nullptr || out->size < sizeof(gim_attribute)) return GIM_MISUSE;
+    File file;
+    const ReadStatus status = openFile(bytes, size, limits, true, &file);
+    if (status != ReadStatus::Ok) return toPublic(status);
+    if (index >= file.attributeCount) return GIM_MISUSE;
+    const AttributeHeader& attribute = file.attributes[index];
+    std::memset(out->name, 0, sizeof out->name);
+    std::memcpy(out->name, attribute.name.data, attribute.name.size);
+    out->grid = attribute.image.grid;
+    out->channels = attribute.channels;
+    out->type = attribute.type;
+    out->coding = attribute.image.coding;
+    out->step = attribute.image.step;
+    out->glued = attribute.glued ? 1 : 0;
+    out->normalized = attribute.normalized ? 1 : 0;
+    out->coded_bytes = attribute.image.samples.size;
+    out->decoded_bytes = std::uint64_t{attribute.image.grid} * attribute.image.grid * attribute.channels *
+                         sampleSize(attribute.type);
+    return GIM_OK;
+}
+
+gim_status gim_decode_attribute(const void* bytes, size_t size, const gim_limits* limits, uint32_t index,
+                                void* workspace, size_t workspace_size, void* samples)
+{
+    File file;
+    ReadStatus status = openFile(bytes, size, limits, true, &file);
+    if (status != ReadStatus::Ok) return toPublic(status);
+    if (index >= file.attributeCount || workspace == nullptr || samples == nullptr ||
+        workspace_size < file.workspace)
+        return GIM_MISUSE;
+    const AttributeHeader& attribute = file.attributes[index];
+    Arena arena(workspace, workspace_size);
+    SeamView seam;
+    const std::uint32_t* classes = nullptr;
+    status = readClasses(file, attribute.image.grid, arena, &seam, &classes);
+    if (status != ReadStatus::Ok) return toPublic(status);
+    return toPublic(decodeAttribute(attribute, seam, classes, arena, samples));
 }
 
 gim_status gim_mesh_size(const void* bytes, size_t size, const gim_limits* limits, uint32_t flags,

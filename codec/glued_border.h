@@ -17,6 +17,12 @@ public:
     /// @param mates    borderSize(grid) entries of scratch, kept
     GluedBorder(const SeamView& seam, std::uint32_t grid, const std::uint32_t* classes, std::uint32_t* mates);
 
+    /// A border where nothing is glued, whatever the seam.
+    explicit GluedBorder(std::uint32_t grid)
+        : classes_(nullptr), mates_(nullptr), grid_(grid), coarsest_(UINT32_MAX)
+    {
+    }
+
     std::uint32_t grid() const { return grid_; }
 
     /// The coarsest grid whose points are glued to each other.

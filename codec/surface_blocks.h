@@ -30,6 +30,7 @@ public:
     /// @param flags  memory(n) zeros
     BlockMap(std::uint8_t* flags, std::uint32_t n) : flags_(flags), side_(side(n)) {}
 
+    void clear() { std::memset(flags_, 0, (std::size_t{side_} + 2) * (std::size_t{side_} + 2)); }
     std::uint32_t side() const { return side_; }
     /// @param direction  0: the normal, 1: the tangents
     bool isFilled(std::uint32_t bi, std::uint32_t bj, unsigned direction) const

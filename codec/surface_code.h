@@ -27,20 +27,22 @@ struct SurfaceWork
     }
 };
 
-/// Builds a surface from its details, coarse to fine; on return work.surface holds it.
+/// Builds a surface, or up to three channels of a field, from the details, coarse to fine; on return
+/// work.surface holds it.
+/// @param frames   SurfaceFrames or FieldFrames: the axes and steps of details
 /// @param coarse   the 3 x 3 image in steps
 /// @param details  details.begin(level, prediction) is called before each level, and if it returns false the
 ///                 level has none; details.isWanted(bi, bj): whether a block has any;
 ///                 details(level, prediction, orientation, i, j, shared) is one, as a vector
-template <class Details>
-void buildSurface(const SurfaceParameters& parameters, const GluedBorder& border,
+template <class Frames, class Details>
+void buildSurface(const Frames& frames, const GluedBorder& border,
                   const std::int64_t (&coarse)[kComponents][kCoarsest * kCoarsest], SurfaceWork& work,
                   Details& details)
 {
     const std::uint32_t grid = border.grid();
     for (unsigned c = 0; c < kComponents; ++c)
         for (unsigned k = 0; k < kCoarsest * kCoarsest; ++k)
-            work.surface[c][k] = static_cast<double>(coarse[c][k]) * parameters.step;
+            work.surface[c][k] = static_cast<double>(coarse[c][k]) * frames.coarseStep();
     if (border.isGluedAt(kCoarsest))
         for (unsigned c = 0; c < kComponents; ++c) border.average(work.surface[c], kCoarsest, work.border);
 
@@ -54,6 +56,7 @@ void buildSurface(const SurfaceParameters& parameters, const GluedBorder& border
             double *coarser = work.coarse[c], *finer = work.surface[c];
             std::memcpy(coarser, finer, std::size_t{m} * m * sizeof *finer);
             std::memset(finer, 0, count * sizeof *finer);
+            if (c >= frames.components()) continue;
             for (std::uint32_t j = 0; j < m; ++j)
                 for (std::uint32_t i = 0; i < m; ++i)
                     finer[2 * j * std::size_t{n} + 2 * i] =
@@ -61,8 +64,7 @@ void buildSurface(const SurfaceParameters& parameters, const GluedBorder& border
             inverseLifting(finer, n, level.border, work.border);
         }
         const double* planes[kComponents] = {work.surface[0], work.surface[1], work.surface[2]};
-        level.meanArea = meanCellArea(planes, n);
-        level.largestRatio = largestTangentialRatio(parameters, level.index);
+        frames.begin(level, planes);
         if (details.begin(level, planes)) {
             for (unsigned c = 0; c < kComponents; ++c)
                 std::memset(work.detail[c], 0, count * sizeof *work.detail[c]);
@@ -83,7 +85,7 @@ void buildSurface(const SurfaceParameters& parameters, const GluedBorder& border
                     put(other.j * std::size_t{n} + other.i);
                     return true;
                 });
-            for (unsigned c = 0; c < kComponents; ++c) {
+            for (unsigned c = 0; c < frames.components(); ++c) {
                 double *moves = work.detail[c], *finer = work.surface[c];
                 for (std::uint32_t j = 1; j < n; j += 2)
                     for (std::uint32_t i = 1; i < n; i += 2) moves[j * std::size_t{n} + i] *= kAreaScale;

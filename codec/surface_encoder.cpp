@@ -34,6 +34,22 @@ private:
     std::vector<std::vector<std::byte>> pieces_;
 };
 
+struct SurfaceMemory
+{
+    explicit SurfaceMemory(std::uint32_t grid)
+    {
+        work.layOut(grid, memory_);
+        chosen.layOut(grid, memory_);
+        coded.layOut(grid, memory_);
+    }
+
+    SurfaceWork work;
+    DetailLevels chosen, coded;
+
+private:
+    Memory memory_;
+};
+
 /// About what a detail will cost, from those chosen before it in its own level and the coarser one.
 class DetailCost
 {
@@ -105,12 +121,11 @@ struct BitLearner
 };
 
 /// Chooses one detail after the other, by what it costs and what it mends.
-class ThriftyDetails
+template <class Frames> class ThriftyDetails
 {
 public:
-    ThriftyDetails(const TransformedSurface& surface, const SurfaceParameters& parameters,
-                   DetailLevels& levels)
-        : surface_(surface), parameters_(parameters), levels_(levels)
+    ThriftyDetails(const TransformedSurface& surface, const Frames& frames, DetailLevels& levels)
+        : surface_(surface), frames_(frames), levels_(levels)
     {
     }
 
@@ -126,9 +141,9 @@ public:
             level.border, n, [](std::uint32_t, std::uint32_t) { return true; },
             [&](unsigned, std::uint32_t i, std::uint32_t j, const SharedDetail&, std::uint32_t bi,
                 std::uint32_t bj) {
-                const Frame frame = frameAt(prediction, level, parameters_, i, j);
+                const Frame frame = frames_.at(prediction, level, i, j);
                 double* worths = &worth_[2 * (bj * std::size_t{side_} + bi)];
-                for (unsigned c = 0; c < kComponents; ++c) {
+                for (unsigned c = 0; c < frames_.components(); ++c) {
                     const double size = std::abs(exactIn(frame, c, j * std::size_t{n} + i));
                     const double nearest = std::floor(size + 0.5);
                     if (nearest == 0) continue;
@@ -153,10 +168,10 @@ public:
         const std::uint32_t n = level.size;
         const std::size_t index = codedIndex(n, i, j);
         const std::uint32_t bi = BlockMap::blockOf(i, side_), bj = BlockMap::blockOf(j, side_);
-        const Frame frame = frameAt(prediction, level, parameters_, i, j);
+        const Frame frame = frames_.at(prediction, level, i, j);
         std::int32_t here[kComponents] = {};
         Vector detail = {0, 0, 0};
-        for (unsigned c = 0; c < kComponents; ++c) {
+        for (unsigned c = 0; c < frames_.components(); ++c) {
             if (!isWorth(bi, bj, c == 0 ? 0 : 1)) continue;
             const double exact = exactIn(frame, c, j * std::size_t{n} + i);
             const double size = std::min(std::abs(exact), static_cast<double>(kLargestDetail));
@@ -197,7 +212,7 @@ private:
     }
 
     const TransformedSurface& surface_;
-    const SurfaceParameters& parameters_;
+    const Frames& frames_;
     DetailLevels& levels_;
     std::vector<double> worth_; // of the level's blocks
     std::uint32_t side_ = 0;
@@ -260,6 +275,25 @@ private:
     std::vector<std::uint32_t> topOfLevel_;
 };
 
+/// Chooses details, builds the surface that they make, and codes them unless `encoder` is null.
+template <class Frames>
+void code(RangeEncoder* encoder, DetailModels& models, const Frames& frames, const GluedBorder& border,
+          const TransformedSurface& surface, SurfaceMemory& memory)
+{
+    const unsigned components = frames.components();
+    QuantizedImage coarse;
+    for (unsigned c = 0; c < components; ++c)
+        for (unsigned k = 0; k < kCoarsest * kCoarsest; ++k)
+            coarse.coarse[c][k] = std::llround(surface.coarse[c][k] / frames.coarseStep());
+    memory.chosen.clear();
+    ThriftyDetails details(surface, frames, memory.chosen);
+    buildSurface(frames, border, coarse.coarse, memory.work, details);
+    if (encoder == nullptr) return;
+    memory.coded.clear();
+    const WholeDetails whole(memory.chosen, border);
+    codeDetails(*encoder, models, border, components, coarse, memory.coded, whole.passes(), whole);
+}
+
 } // namespace
 
 SurfaceEncoder::SurfaceEncoder(const Seam& seam, std::uint32_t grid)
@@ -275,7 +309,13 @@ SeamView SurfaceEncoder::view() const
 TransformedSurface SurfaceEncoder::transform(std::span<const float> samples) const
 {
     std::vector<std::uint32_t> mates(classes_.size());
-    const GluedBorder border(view(), grid_, classes_.data(), mates.data());
+    return transform(samples, kComponents, 0, GluedBorder(view(), grid_, classes_.data(), mates.data()));
+}
+
+// Channels beyond the last are zeros.
+TransformedSurface SurfaceEncoder::transform(std::span<const float> samples, unsigned channels,
+                                             unsigned first, const GluedBorder& border) const
+{
     std::vector<double> work(2 * classes_.size());
     TransformedSurface out;
     out.grid = grid_;
@@ -285,8 +325,9 @@ TransformedSurface SurfaceEncoder::transform(std::span<const float> samples) con
     std::vector<double> image(count), coarse;
     for (unsigned c = 0; c < kComponents; ++c) {
         image.resize(count);
-        for (std::size_t k = 0; k < count; ++k) image[k] = static_cast<double>(samples[kComponents * k + c]);
-        border.average(image.data(), grid_, work.data());
+        for (std::size_t k = 0; k < count; ++k)
+            image[k] = first + c < channels ? static_cast<double>(samples[channels * k + first + c]) : 0.0;
+        if (border.isGluedAt(grid_)) border.average(image.data(), grid_, work.data());
         const auto [least, most] = std::minmax_element(image.begin(), image.end());
         squaredDiagonal += (*most - *least) * (*most - *least);
         auto level = out.levels.rbegin();
@@ -332,34 +373,71 @@ CodedSurface SurfaceEncoder::encode(const TransformedSurface& surface, const Sur
 {
     std::vector<std::uint32_t> mates(classes_.size());
     const GluedBorder border(view(), grid_, classes_.data(), mates.data());
-    Memory memory;
-    SurfaceWork work;
-    DetailLevels chosen;
-    work.layOut(grid_, memory);
-    chosen.layOut(grid_, memory);
-    QuantizedImage coarse;
-    for (unsigned c = 0; c < kComponents; ++c)
-        for (unsigned k = 0; k < kCoarsest * kCoarsest; ++k)
-            coarse.coarse[c][k] = std::llround(surface.coarse[c][k] / parameters.step);
-    ThriftyDetails details(surface, parameters, chosen);
-    buildSurface(parameters, border, coarse.coarse, work, details);
+    SurfaceMemory memory(grid_);
+    const auto models = std::make_unique<DetailModels>();
+    RangeEncoder encoder;
+    code(withPayload ? &encoder : nullptr, *models, SurfaceFrames(parameters), border, surface, memory);
 
     CodedSurface out;
     const std::size_t count = std::size_t{grid_} * grid_;
     out.decoded.resize(kComponents * count);
     for (unsigned c = 0; c < kComponents; ++c)
         for (std::size_t k = 0; k < count; ++k)
-            out.decoded[kComponents * k + c] = static_cast<float>(work.surface[c][k]);
-    if (!withPayload) return out;
+            out.decoded[kComponents * k + c] = static_cast<float>(memory.work.surface[c][k]);
+    if (withPayload) out.payload = encoder.finish();
+    return out;
+}
 
-    DetailLevels coded;
-    coded.layOut(grid_, memory);
+TransformedField SurfaceEncoder::transformField(std::span<const float> samples, unsigned channels,
+                                                bool glued) const
+{
+    std::vector<std::uint32_t> mates(classes_.size());
+    const GluedBorder border =
+        glued ? GluedBorder(view(), grid_, classes_.data(), mates.data()) : GluedBorder(grid_);
+    TransformedField out;
+    out.channels = channels;
+    out.glued = glued;
+    out.grid = grid_;
+    double squaredDiagonal = 0;
+    for (unsigned first = 0; first < channels; first += kComponents) {
+        const TransformedSurface& group =
+            out.groups.emplace_back(transform(samples, channels, first, border));
+        out.largest = std::max(out.largest, group.largest);
+        squaredDiagonal += group.diagonal * group.diagonal;
+    }
+    out.diagonal = std::sqrt(squaredDiagonal);
+    return out;
+}
+
+CodedField SurfaceEncoder::encodeField(const TransformedField& field, const FieldParameters& parameters) const
+{
+    std::vector<std::uint32_t> mates(classes_.size());
+    const GluedBorder border =
+        field.glued ? GluedBorder(view(), grid_, classes_.data(), mates.data()) : GluedBorder(grid_);
+    SurfaceMemory memory(grid_);
     const auto models = std::make_unique<DetailModels>();
-    const WholeDetails whole(chosen, border);
     RangeEncoder encoder;
-    codeSurface(encoder, *models, border, coarse, coded, whole.passes(), whole);
+    const std::size_t count = std::size_t{grid_} * grid_;
+    CodedField out;
+    out.decoded.resize(field.channels * count);
+    unsigned first = 0;
+    for (const TransformedSurface& group : field.groups) {
+        const unsigned channels = std::min(kComponents, field.channels - first);
+        code(&encoder, *models, FieldFrames(parameters, channels), border, group, memory);
+        for (unsigned c = 0; c < channels; ++c)
+            for (std::size_t k = 0; k < count; ++k)
+                out.decoded[field.channels * k + first + c] = static_cast<float>(memory.work.surface[c][k]);
+        first += channels;
+    }
     out.payload = encoder.finish();
     return out;
+}
+
+float smallestStep(const TransformedField& field)
+{
+    float least = field.finest;
+    for (const TransformedSurface& group : field.groups) least = std::max(least, smallestStep(group));
+    return least;
 }
 
 float smallestStep(const TransformedSurface& surface)

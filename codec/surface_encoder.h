@@ -1,5 +1,6 @@
 #pragma once
 
+#include "field_frame.h"
 #include "glued_border.h"
 #include "seam.h"
 #include "surface_frame.h"
@@ -31,7 +32,25 @@ struct CodedSurface
     std::vector<float> decoded; ///< 3 grid^2 numbers, what a decoder will make of it
 };
 
-/// Codes surfaces of one seam.
+/// A field's channels after the same transform, by threes.
+struct TransformedField
+{
+    unsigned channels = 0;
+    bool glued = true;
+    std::vector<TransformedSurface> groups;
+    std::uint32_t grid = 0;
+    double largest = 0;  ///< magnitude of any coefficient
+    double diagonal = 0; ///< of the values' bounding box
+    float finest = 0;    ///< a step below which there is nothing to gain
+};
+
+struct CodedField
+{
+    std::vector<std::uint8_t> payload;
+    std::vector<float> decoded; ///< `channels` numbers for each sample, before integers are rounded
+};
+
+/// Codes surfaces and fields of one seam.
 class SurfaceEncoder
 {
 public:
@@ -47,8 +66,18 @@ public:
     CodedSurface encode(const TransformedSurface& surface, const SurfaceParameters& parameters,
                         bool withPayload = true) const;
 
+    /// @param samples   `channels` numbers for each of grid^2 samples, finite
+    /// @param channels  1 to 16
+    /// @param glued     whether glued samples agree: they are averaged
+    TransformedField transformField(std::span<const float> samples, unsigned channels, bool glued) const;
+
+    /// The step must not be below smallestStep().
+    CodedField encodeField(const TransformedField& field, const FieldParameters& parameters) const;
+
 private:
     SeamView view() const;
+    TransformedSurface transform(std::span<const float> samples, unsigned channels, unsigned first,
+                                 const GluedBorder& border) const;
 
     Seam seam_;
     std::uint32_t grid_;
@@ -57,5 +86,6 @@ private:
 
 /// The step below which coefficients would not fit their coded range.
 float smallestStep(const TransformedSurface& surface);
+float smallestStep(const TransformedField& field);
 
 } // namespace gimg::codec

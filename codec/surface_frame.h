@@ -167,4 +167,27 @@ inline Frame frameAt(const double* const (&planes)[kComponents], const SurfaceLe
     return frame;
 }
 
+/// How buildSurface() is to take the details of a surface: in frames of the prediction.
+class SurfaceFrames
+{
+public:
+    explicit SurfaceFrames(const SurfaceParameters& parameters) : parameters_(parameters) {}
+
+    static constexpr unsigned components() { return kComponents; }
+    double coarseStep() const { return parameters_.step; }
+    void begin(SurfaceLevel& level, const double* const (&prediction)[kComponents]) const
+    {
+        level.meanArea = meanCellArea(prediction, level.size);
+        level.largestRatio = largestTangentialRatio(parameters_, level.index);
+    }
+    Frame at(const double* const (&planes)[kComponents], const SurfaceLevel& level, std::uint32_t i,
+             std::uint32_t j) const
+    {
+        return frameAt(planes, level, parameters_, i, j);
+    }
+
+private:
+    SurfaceParameters parameters_;
+};
+
 } // namespace gimg::codec

@@ -118,6 +118,10 @@ ReadStatus readContents(ByteSpan file, bool allowPrefix, Contents* contents)
         if (chunk.type == kSeamChunk) known = &contents->seam;
         if (chunk.type == kGeometryChunk) known = &contents->geometry;
         if (chunk.type == kNormalChunk) known = &contents->normals;
+        if (chunk.type == kAttributeChunk) {
+            if (contents->attributeCount == kMaxAttributes) return ReadStatus::Corrupt;
+            known = &contents->attributes[contents->attributeCount++];
+        }
         if (known != nullptr) {
             if (known->type != 0) return ReadStatus::Corrupt;
             *known = chunk;

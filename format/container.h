@@ -13,6 +13,8 @@ constexpr std::size_t kMaxChunks = 255;
 constexpr std::uint8_t kSeamChunk = 'S';
 constexpr std::uint8_t kGeometryChunk = 'G';
 constexpr std::uint8_t kNormalChunk = 'n';
+constexpr std::uint8_t kAttributeChunk = 'a';
+constexpr std::size_t kMaxAttributes = 16;
 
 constexpr bool isLetter(std::uint8_t type)
 {
@@ -57,6 +59,8 @@ struct Contents
 {
     std::uint32_t chunks = 0;
     Chunk seam, geometry, normals; ///< type 0: absent
+    Chunk attributes[kMaxAttributes];
+    std::uint32_t attributeCount = 0;
     std::uint64_t otherBytes = 0;  ///< contents of skipped chunks
     bool isPrefix = false;         ///< the file is cut short
 };

@@ -28,7 +28,8 @@ Result<CodedFile> judged(Result<codec::EncodedFile> encoded, const SurfaceMeasur
     return coded;
 }
 
-Result<codec::Encoder> encoderOf(const GridSeam& seam, const FloatImage& geometry, const FloatImage& normals)
+codec::Source sourceOf(const GridSeam& seam, const FloatImage& geometry, const FloatImage& normals,
+                       std::span<const SampledAttribute> attributes)
 {
     codec::Source source;
     source.grid = static_cast<uint32_t>(geometry.width);
@@ -36,7 +37,17 @@ Result<codec::Encoder> encoderOf(const GridSeam& seam, const FloatImage& geometr
     source.xyz = geometry.samples;
     source.normalGrid = static_cast<uint32_t>(normals.width);
     source.normals = normals.samples;
-    return resultOf(codec::Encoder::prepare(source));
+    for (const SampledAttribute& attribute : attributes) {
+        source.attributes.push_back(attribute.source);
+        source.attributes.back().samples = attribute.samples;
+    }
+    return source;
+}
+
+Result<codec::Encoder> encoderOf(const GridSeam& seam, const FloatImage& geometry, const FloatImage& normals,
+                                 std::span<const SampledAttribute> attributes)
+{
+    return resultOf(codec::Encoder::prepare(sourceOf(seam, geometry, normals, attributes)));
 }
 
 } // namespace gimg

@@ -1,5 +1,6 @@
 #pragma once
 
+#include "attribute_sampler.h"
 #include "codec/encode.h"
 #include "gimg/distance.h"
 #include "gimg/fit.h"
@@ -33,7 +34,12 @@ template <class T> Result<T> resultOf(codec::Outcome<T> outcome)
 /// Decodes a file and measures its finest level.
 Result<CodedFile> judged(Result<codec::EncodedFile> encoded, const SurfaceMeasure& measure);
 
+/// The parts of a source, which must live as long as it is used.
 /// @param normals  empty for none
-Result<codec::Encoder> encoderOf(const GridSeam& seam, const FloatImage& geometry, const FloatImage& normals);
+codec::Source sourceOf(const GridSeam& seam, const FloatImage& geometry, const FloatImage& normals,
+                       std::span<const SampledAttribute> attributes = {});
+
+Result<codec::Encoder> encoderOf(const GridSeam& seam, const FloatImage& geometry, const FloatImage& normals,
+                                 std::span<const SampledAttribute> attributes = {});
 
 } // namespace gimg

@@ -134,6 +134,13 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
         if (options.progress) options.progress(name, fraction);
     };
 
+    std::shared_ptr<const AttributeSampler> attributes;
+    if (!options.attributes.empty()) {
+        Result<AttributeSampler> sampler = AttributeSampler::of(
+            options.attributed ? *options.attributed : AttributedSurface{}, options.attributes);
+        if (!sampler) return sampler.error();
+        attributes = std::make_shared<const AttributeSampler>(std::move(*sampler));
+    }
     EncodedMesh out;
     if (const Status scale = checkScale(mesh, out.warnings); !scale) return scale.error();
     Stopwatch watch;
@@ -183,6 +190,7 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     source.seam = seamOf(shared->square);
     source.sample = [shared](int grid) { return sampleGeometry(shared->square, shared->map, grid); };
     source.normals = std::move(*normals);
+    source.attributes = std::move(attributes);
     source.fitRounds = options.fit ? effort.fitRounds : 0;
     source.refits = options.fit;
     source.features = options.features;
@@ -258,9 +266,7 @@ Result<std::optional<CodedFile>> MeshEncoder::Prepared::codeSlid(const GridEncod
                                                                  const EncodeGoal& goal,
                                                                  const EncodeProgress& told) const
 {
-    const Result<codec::Encoder> encoder = slide.finished();
-    if (!encoder) return encoder.error();
-    Result<CodedFile> slid = codeFor(goal, Precision::File, *encoder, measure, told);
+    Result<CodedFile> slid = codeFor(goal, Precision::File, slide.finished(), measure, told);
     return slid ? std::optional(std::move(*slid)) : std::nullopt;
 }
 
@@ -334,6 +340,12 @@ Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal, bool
     Result<CodedFile> coded = lossy ? prepared_->codeSliding(**sampled, goal, refits)
                                     : codeRaw(goal.target, (*sampled)->encoder, prepared_->measure);
     if (!coded) return coded.error();
+    if (prepared_->encoders->hasFields()) {
+        Result<std::vector<uint8_t>> file =
+            prepared_->encoders->withFields(std::move(coded->bytes), **sampled, goal);
+        if (!file) return file.error();
+        coded->bytes = std::move(*file);
+    }
 
     EncodedMesh out = prepared_->report;
     out.grid = grid;

@@ -3,6 +3,7 @@
 #include "gimg/decode.h"
 #include "gimg/nearest.h"
 #include "glued_grid.h"
+#include "on_triangles.h"
 
 #include <tbb/blocked_range.h>
 #include <tbb/parallel_for.h>
@@ -15,22 +16,6 @@ namespace {
 Vec3 pixel(const FloatImage& image, int i, int j)
 {
     return {image.at(i, j, 0), image.at(i, j, 1), image.at(i, j, 2)};
-}
-
-/// Where sample (i, j) of a square image of n samples a side lies on the decoder's triangles.
-Vec3 onTriangles(const FloatImage& geometry, const std::vector<Triangle>& cells, int n, int i, int j)
-{
-    const int last = geometry.width - 1;
-    const double s = static_cast<double>(i) * last / (n - 1), t = static_cast<double>(j) * last / (n - 1);
-    const int column = std::min(static_cast<int>(s), last - 1), row = std::min(static_cast<int>(t), last - 1);
-    const double u = s - column, v = t - row;
-    const Vec3 a = pixel(geometry, column, row), b = pixel(geometry, column + 1, row),
-               c = pixel(geometry, column + 1, row + 1), d = pixel(geometry, column, row + 1);
-    // The first triangle of a cell starts a b; its last corner tells the diagonal.
-    const int third = cells[2 * (static_cast<size_t>(row) * last + column)][2];
-    if (third == (row + 1) * geometry.width + column + 1)
-        return u >= v ? Vec3(a + (u - v) * (b - a) + v * (c - a)) : Vec3(a + u * (c - a) + (v - u) * (d - a));
-    return u + v <= 1 ? Vec3(a + u * (b - a) + v * (d - a)) : Vec3(c + (1 - u) * (d - c) + (1 - v) * (b - c));
 }
 
 } // namespace
@@ -49,13 +34,17 @@ Result<FloatImage> fitNormals(const Mesh& mesh, const FloatImage& geometry, cons
 
     const std::vector<Triangle> cells = gridMesh(geometry).faces;
     const std::vector<Vec3> ofVertex = vertexNormals(mesh);
-    const int n = normals.width;
+    const int n = normals.width, last = geometry.width - 1;
     std::vector<Vec3> fitted(grid->vertexCount());
     tbb::parallel_for(tbb::blocked_range<int>(0, grid->vertexCount(), 256), [&](const auto& range) {
         int near = 0;
         for (int v = range.begin(); v < range.end(); ++v) {
             const int i = grid->sampleOf(v) % n, j = grid->sampleOf(v) / n;
-            const NearestPoint hit = surface->to(onTriangles(geometry, cells, n, i, j), near);
+            const NearestPoint hit =
+                surface->to(onTriangles(geometry, cells, static_cast<double>(i) * last / (n - 1),
+                                        static_cast<double>(j) * last / (n - 1))
+                                .point,
+                            near);
             near = hit.face;
             const Triangle& t = mesh.faces[hit.face];
             Vec3 normal = Vec3::Zero();

@@ -1,7 +1,10 @@
 #include "grid_encoders.h"
 
+#include "codec/field_set.h"
+#include "gimg/decode.h"
 #include "gimg/fit.h"
 #include "gimg/sample.h"
+#include "rate_search.h"
 #include "stopwatch.h"
 
 #include <exception>
@@ -51,13 +54,45 @@ Result<std::shared_ptr<const GridEncoders::Sampled>> GridEncoders::at(int grid, 
         if (const Status fitted = fit(lossy, measure, *geometry, normals, gain, features); !fitted)
             return fitted.error();
     const double fitSeconds = watch.lap();
-    Result<codec::Encoder> encoder = encoderOf(source_.seam, *geometry, normals);
+    Result<std::vector<SampledAttribute>> attributes = attributesAt(*geometry);
+    if (!attributes) return attributes.error();
+    Result<codec::Encoder> encoder = encoderOf(source_.seam, *geometry, normals, *attributes);
     if (!encoder) return encoder.error();
     const double length = seamLength(source_.seam, *geometry);
     made =
         std::make_shared<const Sampled>(Sampled{std::move(*encoder), std::move(*geometry), std::move(normals),
                                                 length, gain, features, sampleSeconds, fitSeconds});
     return made;
+}
+
+Result<std::vector<SampledAttribute>> GridEncoders::attributesAt(const FloatImage& geometry) const
+{
+    if (!source_.attributes) return std::vector<SampledAttribute>{};
+    return source_.attributes->at(geometry, source_.seam);
+}
+
+Result<std::vector<uint8_t>> GridEncoders::withFields(std::vector<uint8_t> file, const Sampled& sampled,
+                                                      const EncodeGoal& goal) const
+{
+    const Result<DecodedImages> images = decodeImages(file);
+    if (!images) return images.error();
+    const bool lossy = goal.target != EncodeTarget::Raw12 && goal.target != EncodeTarget::RawFloat;
+    Result<FloatImage> normals = sampled.normals;
+    if (normals->width > 0 && lossy)
+        normals = fitNormals(*source_.surface, images->geometry, source_.seam, sampled.normals);
+    if (!normals) return normals.error();
+    const Result<std::vector<SampledAttribute>> attributes = attributesAt(images->geometry);
+    if (!attributes) return attributes.error();
+    const Result<codec::FieldSet> fields =
+        resultOf(codec::FieldSet::prepare(sourceOf(source_.seam, images->geometry, *normals, *attributes)));
+    if (!fields) return fields.error();
+    Result<codec::EncodedFile> made = resultOf(
+        codec::withFields(file, *fields, fieldSettings(goal),
+                          goal.target == EncodeTarget::Bytes ? std::optional(goal.bytes) : std::nullopt));
+    if (made) return std::move(made->bytes);
+    // So few bytes that only what was coded first fits.
+    if (made.error().kind == ErrorKind::TargetUnreachable) return file;
+    return made.error();
 }
 
 Result<GridEncoders::Slide> GridEncoders::slide(const Sampled& sampled)
@@ -106,18 +141,6 @@ try {
     return Done{};
 } catch (const std::exception& failure) {
     return Error{ErrorKind::BadArgument, failure.what()};
-}
-
-Result<codec::Encoder> GridEncoders::Slide::finished() const
-{
-    if (sampled_.normals.width == 0) return encoder_;
-    // Normals belong to where the samples are now.
-    const GridSource& source = encoders_.source_;
-    FloatImage moved = sampled_.geometry;
-    moved.samples.assign(encoder_.samples().begin(), encoder_.samples().end());
-    const Result<FloatImage> normals = fitNormals(*source.surface, moved, source.seam, sampled_.normals);
-    if (!normals) return normals.error();
-    return encoderOf(source.seam, moved, *normals);
 }
 
 } // namespace gimg

@@ -20,8 +20,9 @@ struct GridSource
     std::shared_ptr<const Mesh> surface; ///< what samples slide along, and are fitted to
     GridSeam seam;
     std::function<Result<FloatImage>(int grid)> sample;
-    FloatImage normals; ///< empty: none
-    int fitRounds = 0;  ///< 0: samples stay as they are
+    FloatImage normals;                                 ///< empty: none
+    std::shared_ptr<const AttributeSampler> attributes; ///< null: none
+    int fitRounds = 0;                                  ///< 0: samples stay as they are
     bool features = false;
     bool refits = false; ///< whether Slide::refit is allowed
 };
@@ -59,8 +60,8 @@ public:
         Status refit(const FloatImage& decoded);
         bool mayRefit() const;
 
-        /// The encoder of the samples where they are, with the normals there.
-        Result<codec::Encoder> finished() const;
+        /// The encoder of the samples where they are; normals and attributes are those of where they were.
+        codec::Encoder finished() const { return encoder_.withFieldsOf(sampled_.encoder); }
 
     private:
         friend class GridEncoders;
@@ -78,7 +79,15 @@ public:
     /// @param sampled  of this object
     Result<Slide> slide(const Sampled& sampled);
 
+    bool hasFields() const { return source_.normals.width > 0 || source_.attributes; }
+
+    /// The file with the normals and attributes of where the decoder puts its samples.
+    /// @param sampled  of this object
+    Result<std::vector<uint8_t>> withFields(std::vector<uint8_t> file, const Sampled& sampled,
+                                            const EncodeGoal& goal) const;
+
 private:
+    Result<std::vector<SampledAttribute>> attributesAt(const FloatImage& geometry) const;
     Status fit(bool lossy, const SurfaceMeasure& measure, FloatImage& geometry, FloatImage& normals,
                std::optional<FitGain>& gain, std::optional<FeatureReport>& features) const;
 

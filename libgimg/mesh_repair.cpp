@@ -1,6 +1,7 @@
 #include "mesh_repair.h"
 
 #include "polygon_triangulator.h"
+#include "vertex_attributes.h"
 
 #include <algorithm>
 #include <numeric>
@@ -405,6 +406,46 @@ Mesh compacted(const PolygonSoup& soup, std::vector<Triangle> faces)
     return mesh;
 }
 
+/// A triangle's corners in ascending order, and whether that turns it over.
+std::pair<Triangle, bool> sortedCorners(const Triangle& t)
+{
+    Triangle sorted = t;
+    std::sort(sorted.begin(), sorted.end());
+    const int first = static_cast<int>(std::min_element(t.begin(), t.end()) - t.begin());
+    return {sorted, t[(first + 1) % 3] > t[(first + 2) % 3]};
+}
+
+/// The file's triangles that became `faces`, and as these are oriented, over the vertices that the file gives
+/// them, which welding may have joined: so that no vertex takes the attributes of another one.
+AttributedSurface attributedSurface(const PolygonSoup& soup, const std::vector<Triangle>& triangles,
+                                    const std::vector<Triangle>& faces, bool welded)
+{
+    std::vector<std::pair<Triangle, bool>> kept;
+    for (const Triangle& t : faces) kept.push_back(sortedCorners(t));
+    std::sort(kept.begin(), kept.end());
+    const std::vector<Triangle> named =
+        welded ? relabelled(triangles, firstAtPosition(soup.positions, triangles)) : triangles;
+    AttributedSurface surface;
+    std::vector<int> label(soup.positions.size(), -1), vertices;
+    for (size_t f = 0; f < triangles.size(); ++f) {
+        const auto [corners, turned] = sortedCorners(named[f]);
+        const auto found = std::lower_bound(kept.begin(), kept.end(), std::pair(corners, false));
+        if (found == kept.end() || found->first != corners) continue;
+        Triangle& t = surface.mesh.faces.emplace_back(triangles[f]);
+        if (found->second != turned) std::swap(t[1], t[2]);
+        for (int& v : t) {
+            if (label[v] < 0) {
+                label[v] = static_cast<int>(vertices.size());
+                vertices.push_back(v);
+                surface.mesh.positions.push_back(soup.positions[v]);
+            }
+            v = label[v];
+        }
+    }
+    surface.attributes = attributesOf(soup, vertices);
+    return surface;
+}
+
 } // namespace
 
 std::vector<Triangle> triangulate(const PolygonSoup& soup)
@@ -461,6 +502,8 @@ Result<MeshFile> repaired(const PolygonSoup& soup, const ReadOptions& options)
         const Vec3& p = soup.positions[t[0]];
         report.zeroAreaFaces += (soup.positions[t[1]] - p).cross(soup.positions[t[2]] - p).isZero(0);
     }
+    if (!soup.columns.empty())
+        file.attributed = attributedSurface(soup, triangles, faces, report.weldedVertices > 0);
     file.mesh = compacted(soup, std::move(faces));
     return file;
 }

@@ -10,9 +10,25 @@ namespace gimg {
 
 namespace {
 
-void writeObj(const Mesh& mesh, std::span<const Vec3> normals, MeshOutput& out)
+bool isColor(const VertexAttribute& attribute)
 {
-    for (const Vec3& p : mesh.positions) out << "v " << p << "\n";
+    return attribute.name == "color" && (attribute.channels == 3 || attribute.channels == 4);
+}
+
+double largestOf(gim_sample_type type) { return type == GIM_U8 ? 255 : type == GIM_U16 ? 65535 : 1; }
+
+void writeObj(const Mesh& mesh, std::span<const Vec3> normals, std::span<const VertexAttribute> attributes,
+              MeshOutput& out)
+{
+    const auto color = std::find_if(attributes.begin(), attributes.end(), isColor);
+    for (size_t v = 0; v < mesh.positions.size(); ++v) {
+        out << "v " << mesh.positions[v];
+        for (int c = 0; c < 3 && color != attributes.end(); ++c)
+            out << " "
+                << static_cast<float>(double{color->values[v * color->channels + c]} /
+                                      largestOf(color->type));
+        out << "\n";
+    }
     for (const Vec3& n : normals) out << "vn " << n << "\n";
     for (const Triangle& t : mesh.faces) {
         out << "f";
@@ -47,7 +63,24 @@ struct VertexProperties
     std::span<const Vec3> normals;
     std::span<const Color> colors;
     std::span<const double> quality;
+    std::span<const VertexAttribute> attributes;
 };
+
+// A colour of floats from 0 to 1 becomes bytes.
+gim_sample_type plyType(const VertexAttribute& attribute)
+{
+    return isColor(attribute) && attribute.type == GIM_F32 ? GIM_U8 : attribute.type;
+}
+
+std::string plyName(const VertexAttribute& attribute, int channel)
+{
+    constexpr const char* kColor[] = {"red", "green", "blue", "alpha"};
+    if (isColor(attribute)) return kColor[channel];
+    if (attribute.name == "uv" && attribute.channels == 2) return channel == 0 ? "s" : "t";
+    std::string name = attribute.name;
+    std::replace(name.begin(), name.end(), ' ', '_'); // which ends a word of the header
+    return attribute.channels == 1 ? name : name + "_" + std::to_string(channel);
+}
 
 void writePlyHeader(const Mesh& mesh, const VertexProperties& vertex, bool isFloat, Encoding encoding,
                     MeshOutput& out)
@@ -64,6 +97,13 @@ void writePlyHeader(const Mesh& mesh, const VertexProperties& vertex, bool isFlo
     if (!vertex.colors.empty())
         for (const char* channel : {"red", "green", "blue"}) out << "property uchar " << channel << "\n";
     if (!vertex.quality.empty()) out << "property float quality\n";
+    for (const VertexAttribute& attribute : vertex.attributes)
+        for (int c = 0; c < attribute.channels; ++c)
+            out << "property "
+                << (plyType(attribute) == GIM_U8    ? "uchar "
+                    : plyType(attribute) == GIM_U16 ? "ushort "
+                                                    : "float ")
+                << plyName(attribute, c) << "\n";
     out << "element face " << mesh.faceCount() << "\nproperty list uchar int vertex_indices\nend_header\n";
 }
 
@@ -89,6 +129,18 @@ void writePly(const Mesh& mesh, const VertexProperties& vertex, Encoding encodin
         if (!vertex.colors.empty())
             for (uint8_t x : vertex.colors[v]) ascii ? void(out << " " << int{x}) : out.binary(x, 1);
         if (!vertex.quality.empty()) number(static_cast<float>(vertex.quality[v]));
+        for (const VertexAttribute& attribute : vertex.attributes)
+            for (int c = 0; c < attribute.channels; ++c) {
+                const gim_sample_type type = plyType(attribute);
+                float value = attribute.values[v * attribute.channels + c];
+                if (type != attribute.type) value = std::floor(std::clamp(value, 0.0f, 1.0f) * 255 + 0.5f);
+                if (type == GIM_F32)
+                    number(value);
+                else if (ascii)
+                    out << " " << static_cast<int>(value);
+                else
+                    out.binary(static_cast<uint64_t>(value), type == GIM_U8 ? 1 : 2);
+            }
         if (ascii) out << "\n";
     }
     for (const Triangle& t : mesh.faces) {
@@ -136,8 +188,13 @@ void writeStl(const Mesh& mesh, Encoding encoding, MeshOutput& out)
     if (encoding == Encoding::Ascii) out << "endsolid mesh\n";
 }
 
-Status checked(const Mesh& mesh, MeshFormat format, std::span<const Vec3> normals, Encoding encoding)
+Status checked(const Mesh& mesh, MeshFormat format, std::span<const Vec3> normals,
+               std::span<const VertexAttribute> attributes, Encoding encoding)
 {
+    for (const VertexAttribute& attribute : attributes)
+        if (attribute.values.size() != static_cast<size_t>(attribute.channels) * mesh.positions.size())
+            return Error{ErrorKind::BadArgument,
+                         "attribute " + attribute.name + " does not fit the vertices"};
     for (size_t f = 0; f < mesh.faces.size(); ++f)
         for (int v : mesh.faces[f])
             if (v < 0 || v >= mesh.vertexCount())
@@ -160,20 +217,28 @@ Status checked(const Mesh& mesh, MeshFormat format, std::span<const Vec3> normal
 
 } // namespace
 
-Status writeMesh(const Mesh& mesh, const std::string& path, std::span<const Vec3> normals, Encoding encoding)
+bool takesAttribute(const std::string& path, const VertexAttribute& attribute)
+{
+    const Result<MeshFormat> format = meshFormat(path);
+    if (!format) return false;
+    return *format == MeshFormat::Ply || (*format == MeshFormat::Obj && isColor(attribute));
+}
+
+Status writeMesh(const Mesh& mesh, const std::string& path, std::span<const Vec3> normals, Encoding encoding,
+                 std::span<const VertexAttribute> attributes)
 try {
     const Result<MeshFormat> format = meshFormat(path);
     if (!format) return format.error();
-    if (const Status status = checked(mesh, *format, normals, encoding); !status)
+    if (const Status status = checked(mesh, *format, normals, attributes, encoding); !status)
         return Error{status.error().kind, path + ": " + status.error().message};
 
     MeshOutput out(encoding == Encoding::BinaryBigEndian);
     switch (*format) {
     case MeshFormat::Obj:
-        writeObj(mesh, normals, out);
+        writeObj(mesh, normals, attributes, out);
         break;
     case MeshFormat::Ply:
-        writePly(mesh, {normals, {}, {}}, encoding, out);
+        writePly(mesh, {normals, {}, {}, attributes}, encoding, out);
         break;
     case MeshFormat::Off:
         writeOff(mesh, normals, out);
@@ -193,14 +258,14 @@ try {
     const Result<MeshFormat> format = meshFormat(path);
     if (!format || *format != MeshFormat::Ply)
         return Error{ErrorKind::FormatUnknown, path + ": colours are written to .ply only"};
-    if (const Status status = checked(mesh, *format, {}, encoding); !status)
+    if (const Status status = checked(mesh, *format, {}, {}, encoding); !status)
         return Error{status.error().kind, path + ": " + status.error().message};
     for (const size_t count : {colors.size(), quality.size()})
         if (count != 0 && count != mesh.positions.size())
             return Error{ErrorKind::BadArgument, path + ": " + std::to_string(count) + " values for " +
                                                      std::to_string(mesh.vertexCount()) + " vertices"};
     MeshOutput out(encoding == Encoding::BinaryBigEndian);
-    writePly(mesh, {{}, colors, quality}, encoding, out);
+    writePly(mesh, {{}, colors, quality, {}}, encoding, out);
     return out.save(path);
 } catch (const std::exception& failure) {
     return Error{ErrorKind::FileNotWritable, path + ": " + failure.what()};

@@ -3,6 +3,8 @@
 #include "gimg/mesh.h"
 #include "gimg/result.h"
 
+#include <gim.h>
+
 #include <cstddef>
 #include <span>
 #include <string>
@@ -21,10 +23,19 @@ enum class MeshFormat
 /// By the extension of the path, in either case.
 Result<MeshFormat> meshFormat(const std::string& path);
 
+/// A number that every vertex has besides its position.
+struct VertexColumn
+{
+    std::string name;
+    gim_sample_type type = GIM_F32;
+    std::vector<float> values; ///< one for each position
+};
+
 /// Polygons as a file lists them: every index is in range, nothing else is promised.
 struct PolygonSoup
 {
     std::vector<Vec3> positions;
+    std::vector<VertexColumn> columns;
     std::vector<int> corners;                 ///< vertex indices of all faces, one face after the other
     std::vector<size_t> faceStart{size_t{0}}; ///< faceCount() + 1 offsets into corners
     int firstNumber = 0;                      ///< what the file format calls its first vertex and face

@@ -33,8 +33,7 @@ public:
         : target_(goal.target), asked_(askedQuality(goal)), window_(windowOf(goal.target, precision)),
           encoder_(encoder), measure_(measure), progress_(progress)
     {
-        settings_.coding = goal.coding == LossyCoding::Surface ? GIM_CODING_SURFACE : GIM_CODING_WAVELET;
-        settings_.normalStep = kNormalStep;
+        settings_ = fieldSettings(goal);
     }
 
     Result<CodedFile> run()
@@ -153,6 +152,17 @@ private:
 };
 
 } // namespace
+
+codec::Settings fieldSettings(const EncodeGoal& goal)
+{
+    codec::Settings settings;
+    settings.coding = goal.target == EncodeTarget::Raw12      ? GIM_CODING_RAW12
+                      : goal.target == EncodeTarget::RawFloat ? GIM_CODING_FLOAT
+                      : goal.coding == LossyCoding::Surface   ? GIM_CODING_SURFACE
+                                                              : GIM_CODING_WAVELET;
+    settings.normalStep = kNormalStep;
+    return settings;
+}
 
 double quality(const CodedFile& file, EncodeTarget target)
 {

@@ -21,6 +21,9 @@ float stepToMeet(const EncodeGoal& goal, const CodedFile& file);
 /// "70.00 dB", "a largest error of 0.001"
 std::string describeQuality(double quality, EncodeTarget target);
 
+/// How normals and attributes are coded where the goal is not a number of bytes.
+codec::Settings fieldSettings(const EncodeGoal& goal);
+
 /// The smallest file found that meets a goal of a lossy target.
 /// Errors: TargetUnreachable, says what can be reached.
 Result<CodedFile> codeFor(const EncodeGoal& goal, Precision precision, const codec::Encoder& encoder,

@@ -1,4 +1,5 @@
-// Wavefront OBJ: the statements v and f; of the others only the syntax of vn and vt is looked at.
+// Wavefront OBJ: the statements v (with colours) and f; of the others only the syntax of vn and vt is looked
+// at.
 #include "soup_parsers.h"
 #include "text_scan.h"
 
@@ -29,6 +30,8 @@ public:
             if (key == "vt") good = numbers(1);
             if (!good) return failure(key);
         } while (scan_.nextLine());
+        if (!soup_.columns.empty() && soup_.columns[0].values.size() != soup_.positions.size())
+            soup_.columns.clear();
         return std::move(soup_);
     }
 
@@ -42,7 +45,22 @@ private:
             x = *value;
         }
         soup_.positions.push_back(p);
+        color();
         return true;
+    }
+
+    // What some programs write after the position. It counts if every vertex has it.
+    void color()
+    {
+        float rgb[3];
+        for (float& x : rgb) {
+            const std::optional<double> value = number(scan_.lineToken());
+            if (!value) return;
+            x = static_cast<float>(*value);
+        }
+        if (soup_.columns.empty())
+            for (const char* name : {"red", "green", "blue"}) soup_.columns.push_back({name, GIM_F32, {}});
+        for (int k = 0; k < 3; ++k) soup_.columns[k].values.push_back(rgb[k]);
     }
 
     bool face()

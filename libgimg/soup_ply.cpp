@@ -1,5 +1,5 @@
-// PLY 1.0, text and binary of either byte order. Elements and properties other than the coordinates and the
-// vertex indices are passed over, wherever they stand.
+// PLY 1.0, text and binary of either byte order. Elements and properties other than the vertices' numbers and
+// the vertex indices are passed over, wherever they stand.
 #include "soup_parsers.h"
 #include "text_scan.h"
 
@@ -225,7 +225,11 @@ public:
                 return Error{ErrorKind::FileTruncated, "the header promises " + std::to_string(e.count) +
                                                            " of element " + e.name +
                                                            ", more than the file can hold"};
-            if (isVertex_) soup_.positions.reserve(static_cast<size_t>(e.count));
+            if (isVertex_) {
+                soup_.positions.reserve(static_cast<size_t>(e.count));
+                for (VertexColumn& column : soup_.columns)
+                    column.values.reserve(static_cast<size_t>(e.count));
+            }
             if (isFace_) {
                 soup_.corners.reserve(3 * static_cast<size_t>(e.count));
                 soup_.faceStart.reserve(static_cast<size_t>(e.count) + 1);
@@ -250,11 +254,16 @@ private:
     {
         isVertex_ = e.name == "vertex";
         isFace_ = e.name == "face";
+        columnOf_.assign(e.properties.size(), kNoColumn);
         std::fill(axis_, axis_ + 3, size_t{0});
         indices_ = e.properties.size();
         bool found[3] = {};
         for (size_t p = 0; p < e.properties.size(); ++p) {
             const Property& property = e.properties[p];
+            if (isVertex_ && !property.countType && !isAxis(property.name)) {
+                columnOf_[p] = soup_.columns.size();
+                soup_.columns.push_back({property.name, sampleType(property.type), {}});
+            }
             for (int k = 0; k < 3; ++k)
                 if (isVertex_ && !property.countType &&
                     property.name == std::string(1, static_cast<char>('x' + k))) {
@@ -281,6 +290,8 @@ private:
                 if (const Stop stop = body_.read(property.type, value); stop != Stop::None) return stop;
                 for (int k = 0; k < 3; ++k)
                     if (axis_[k] == p) position[k] = value;
+                if (columnOf_[p] != kNoColumn)
+                    soup_.columns[columnOf_[p]].values.push_back(asSample(property.type, value));
                 continue;
             }
             if (const Stop stop = body_.read(*property.countType, value); stop != Stop::None) return stop;
@@ -299,8 +310,26 @@ private:
         return Stop::None;
     }
 
+    static constexpr size_t kNoColumn = SIZE_MAX;
+
+    static bool isAxis(const std::string& name) { return name == "x" || name == "y" || name == "z"; }
+
+    static gim_sample_type sampleType(Scalar type)
+    {
+        return type == Scalar::Uint8 ? GIM_U8 : type == Scalar::Uint16 ? GIM_U16 : GIM_F32;
+    }
+
+    // Text may hold anything under the name of a type.
+    static float asSample(Scalar type, double value)
+    {
+        const double most = type == Scalar::Uint8 ? 255 : 65535;
+        if (sampleType(type) == GIM_F32) return static_cast<float>(value);
+        return value >= 0 ? static_cast<float>(std::min(std::floor(value), most)) : 0.0f;
+    }
+
     Body body_;
     PolygonSoup soup_;
+    std::vector<size_t> columnOf_; // by property of the element at hand
     bool isVertex_ = false;
     bool isFace_ = false;
     size_t axis_[3] = {};

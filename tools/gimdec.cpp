@@ -117,11 +117,19 @@ int main(int argc, char** argv)
     if (!mesh) return refuse(a.input + ": " + mesh.error().message);
     const double decodeSeconds = secondsSince(start);
 
-    const Status written = writeMesh(*mesh, a.output, vertexNormals(*file, *images, a.level, a.flags()));
+    const Result<std::vector<VertexAttribute>> attributes =
+        levelAttributes(*file, *images, a.level, a.flags());
+    if (!attributes) return refuse(a.input + ": " + attributes.error().message);
+    const Status written = writeMesh(*mesh, a.output, vertexNormals(*file, *images, a.level, a.flags()),
+                                     Encoding::Binary, *attributes);
     if (!written) {
         const bool usage = written.error().kind == ErrorKind::FormatUnknown;
         return cli::fail("gimdec", usage ? cli::Usage : cli::Refused, written.error().message);
     }
+    for (const VertexAttribute& attribute : *attributes)
+        if (!takesAttribute(a.output, attribute))
+            std::cerr << "gimdec: " << a.output << " cannot hold the attribute " << attribute.name
+                      << ": it is left out\n";
     if (!a.image.empty()) {
         const Status status =
             exr ? writeExr(images->geometry, a.image) : writePng16(images->geometry, a.image);
@@ -143,6 +151,8 @@ int main(int argc, char** argv)
         json["fused"] = !a.noFuse;
         json["diffused"] = !a.noFuse && !a.noDiffuse;
         json["normals"] = info.normal_grid;
+        json["attributes"] = nlohmann::ordered_json::array();
+        for (const VertexAttribute& attribute : *attributes) json["attributes"].push_back(attribute.name);
         json["seconds"] = {{"decode", decodeSeconds}, {"total", secondsSince(start)}};
         if (!cli::writeJson(a.json, json)) return refuse(a.json + ": cannot be written");
     }

@@ -25,9 +25,15 @@ const char* nameOf(gim_coding coding)
         return "float";
     case GIM_CODING_SURFACE:
         return "surface";
+    case GIM_CODING_FIELD:
+        return "field";
     }
     return "unknown";
 }
+
+const char* nameOf(gim_sample_type type) { return type == GIM_U8 ? "u8" : type == GIM_U16 ? "u16" : "f32"; }
+
+bool isLossless(const gim_attribute& attribute) { return attribute.coding == GIM_CODING_FLOAT; }
 
 const char* contentOf(char type)
 {
@@ -38,6 +44,8 @@ const char* contentOf(char type)
         return "geometry";
     case 'n':
         return "normals";
+    case 'a':
+        return "attribute";
     default:
         return "unknown, skipped";
     }
@@ -59,6 +67,7 @@ struct Summary
     gim_seam seam{};
     std::vector<gim_side> sides;
     std::vector<gim_chunk> chunks;
+    std::vector<gim_attribute> attributes;
 
     std::string word() const
     {
@@ -82,6 +91,13 @@ gim_status summarize(const std::vector<uint8_t>& file, Summary& summary)
         status = gim_read_chunk(file.data(), file.size(), k, &chunk);
         if (status != GIM_OK) return status;
         summary.chunks.push_back(chunk);
+    }
+    for (uint32_t k = 0; k < summary.info.attributes; ++k) {
+        gim_attribute attribute{};
+        attribute.size = sizeof attribute;
+        status = gim_read_attribute(file.data(), file.size(), nullptr, k, &attribute);
+        if (status != GIM_OK) return status;
+        summary.attributes.push_back(attribute);
     }
     std::vector<unsigned char> work(gim_workspace_size(&summary.info));
     summary.seam.size = sizeof summary.seam;
@@ -127,12 +143,24 @@ nlohmann::ordered_json jsonOf(const Summary& s, std::size_t bytes)
                      {"sideband", s.info.seam_bytes},
                      {"geometry", s.info.geometry_bytes},
                      {"normals", s.info.normal_bytes},
+                     {"attributes", s.info.attribute_bytes},
                      {"other", s.info.other_bytes}};
     json["geometry"] = imageJson(s.info.grid, s.info.coding, s.info.step, s.info.geometry_bytes);
     json["normals"] = nullptr;
     if (s.info.normal_grid != 0)
         json["normals"] =
             imageJson(s.info.normal_grid, s.info.normal_coding, s.info.normal_step, s.info.normal_bytes);
+    json["attributes"] = nlohmann::ordered_json::array();
+    for (const gim_attribute& a : s.attributes) {
+        nlohmann::ordered_json attribute = {{"name", a.name}};
+        attribute.update(imageJson(a.grid, a.coding, a.step, a.coded_bytes));
+        if (isLossless(a)) attribute["coding"] = "lossless";
+        attribute["channels"] = a.channels;
+        attribute["type"] = nameOf(a.type);
+        attribute["glued"] = a.glued != 0;
+        attribute["normalized"] = a.normalized != 0;
+        json["attributes"].push_back(attribute);
+    }
     nlohmann::ordered_json seam;
     seam["start"] = s.seam.start;
     seam["paths"] = s.seam.paths;
@@ -168,6 +196,15 @@ void print(const Summary& s, std::size_t bytes)
     printImage("geometry", s.info.grid, s.info.coding, s.info.step);
     if (s.info.normal_grid != 0)
         printImage("normals", s.info.normal_grid, s.info.normal_coding, s.info.normal_step);
+    for (const gim_attribute& a : s.attributes) {
+        std::cout << "attribute  " << a.name << ": " << a.grid << " x " << a.grid << ", " << a.channels
+                  << " x " << nameOf(a.type) << ", ";
+        if (isLossless(a))
+            std::cout << "lossless";
+        else
+            std::cout << nameOf(a.coding) << ", step " << a.step;
+        std::cout << (a.glued != 0 ? "" : ", open border") << ", " << a.coded_bytes << " bytes\n";
+    }
     std::cout << "levels     " << s.info.levels << ", the coarsest " << s.info.lowest << " x "
               << s.info.lowest << '\n'
               << "surface    genus " << s.seam.genus << ", " << s.seam.boundary_loops << " boundary loop"
@@ -180,8 +217,8 @@ void print(const Summary& s, std::size_t bytes)
     for (const gim_side& side : s.sides)
         if (side.kind != GIM_SIDE_MATE) std::cout << ' ' << labelOf(side) << '=' << side.length;
     std::cout << "\nbytes      container " << s.info.container_bytes << ", seam " << s.info.seam_bytes
-              << ", geometry " << s.info.geometry_bytes << ", normals " << s.info.normal_bytes << ", other "
-              << s.info.other_bytes << '\n';
+              << ", geometry " << s.info.geometry_bytes << ", normals " << s.info.normal_bytes
+              << ", attributes " << s.info.attribute_bytes << ", other " << s.info.other_bytes << '\n';
     for (const gim_chunk& chunk : s.chunks)
         std::cout << "chunk      " << chunk.type << " (" << contentOf(chunk.type) << "): " << chunk.length
                   << " bytes at " << chunk.offset << ", " << chunk.total << " in all\n";

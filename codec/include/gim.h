@@ -59,17 +59,19 @@ GIM_API const char* gim_status_text(gim_status status);
 /* What a caller is willing to decode. A member that is 0 stands for its default. */
 typedef struct gim_limits {
     size_t size;             /* sizeof(gim_limits) */
-    uint32_t max_grid;       /* samples a side, of geometry and normals; default 4097 */
+    uint32_t max_grid;       /* samples a side, of all images; default 4097 */
     uint32_t max_sides;      /* sides of the seam; default 16384 */
     uint64_t max_workspace;  /* bytes; default 2 GiB */
 } gim_limits;
 
 typedef enum gim_coding {
     GIM_CODING_WAVELET = 0, /* lossy: wavelet coefficients of each component, quantised with one step */
-    GIM_CODING_RAW12 = 1,   /* 12-bit integers over a common cube */
-    GIM_CODING_FLOAT = 2,   /* the float32 samples themselves, packed without loss */
-    GIM_CODING_SURFACE = 3  /* lossy: wavelet coefficients along the surface's normals and tangents, across
+    GIM_CODING_RAW12 = 1,   /* 12-bit integers over a common cube, coded without loss; always fused */
+    GIM_CODING_FLOAT = 2,   /* the float32 samples themselves, coded without loss; always fused */
+    GIM_CODING_SURFACE = 3, /* lossy: wavelet coefficients along the surface's normals and tangents, across
                                the seam; geometry only, and always fused */
+    GIM_CODING_FIELD = 5    /* lossy: wavelet coefficients of what is spread over the surface, across the seam;
+                               normals and attributes only, and always fused */
 } gim_coding;
 
 typedef struct gim_info {
@@ -83,12 +85,14 @@ typedef struct gim_info {
     uint32_t normal_grid;    /* samples a side of the normal image; 0: the file has none */
     gim_coding normal_coding;/* meaningful if normal_grid is not 0 */
     float normal_step;
+    uint32_t attributes;     /* how many, 0 to 16; for gim_read_attribute */
     uint32_t chunks;         /* for gim_read_chunk */
     uint64_t container_bytes;/* header, chunk headers, checksums and the fixed fields of the known chunks */
     uint64_t seam_bytes;     /* the seam's coded word */
     uint64_t geometry_bytes; /* the geometry's coded samples */
     uint64_t normal_bytes;   /* the normals' coded samples */
-    uint64_t other_bytes;    /* contents of chunks this version does not know; the five add up to the file */
+    uint64_t attribute_bytes;/* all attributes' coded samples */
+    uint64_t other_bytes;    /* contents of chunks this version does not know; the six add up to the file */
     uint64_t workspace;      /* as gim_workspace_size */
     uint64_t missing_bytes;  /* of the geometry's coded samples, in a file that is cut short; otherwise 0 */
 } gim_info;
@@ -104,7 +108,7 @@ GIM_API size_t gim_workspace_size(const gim_info* info);
 
 typedef struct gim_chunk {
     size_t size;      /* sizeof(gim_chunk), set by the caller */
-    char type;        /* 'S' seam, 'G' geometry, 'n' normals; small letter: may be skipped */
+    char type;        /* 'S' seam, 'G' geometry, 'n' normals, 'a' attribute; small letter: may be skipped */
     uint64_t offset;  /* of the chunk's content in the file */
     uint64_t length;  /* of the content */
     uint64_t total;   /* with its header and checksum */
@@ -144,7 +148,8 @@ GIM_API gim_status gim_read_seam(const void* bytes, size_t size, const gim_limit
                                  size_t workspace_size, gim_seam* seam, gim_side* sides, uint32_t capacity);
 
 /* Flags for decoding. */
-#define GIM_NO_FUSE 1u    /* leave glued samples as they were coded: shows the cracks; implies the next */
+#define GIM_NO_FUSE 1u    /* leave glued samples as they were coded: shows the cracks; implies the next. Wavelet
+                           * images only: the other codings code glued samples as one */
 #define GIM_NO_DIFFUSE 2u /* fuse, but do not spread the fusing error into the interior */
 #define GIM_PREFIX 4u     /* a file that is cut short will do, as far as gim_probe says so. Surface coding puts first
                              what tells most: the surface is coarser, and whole. What follows the cut is absent,
@@ -161,6 +166,43 @@ GIM_API gim_status gim_decode_geometry(const void* bytes, size_t size, const gim
  * GIM_MISUSE: the file has no normals. */
 GIM_API gim_status gim_decode_normals(const void* bytes, size_t size, const gim_limits* limits,
                                       uint32_t flags, void* workspace, size_t workspace_size, float* normals);
+
+#define GIM_MAX_CHANNELS 16
+#define GIM_MAX_ATTRIBUTE_NAME 63 /* bytes */
+
+typedef enum gim_sample_type {
+    GIM_U8 = 0,  /* uint8_t */
+    GIM_U16 = 1, /* uint16_t */
+    GIM_F32 = 2  /* float */
+} gim_sample_type;
+
+/* An attribute: an image of its own of what is spread over the surface, as colours or weights. */
+typedef struct gim_attribute {
+    size_t size;            /* sizeof(gim_attribute), set by the caller */
+    char name[GIM_MAX_ATTRIBUTE_NAME + 1]; /* UTF-8 without control characters, ended by 0; no two are equal */
+    uint32_t grid;          /* samples a side, 2^j + 1, at least that of the lowest level */
+    uint32_t channels;      /* 1 to 16 */
+    gim_sample_type type;
+    gim_coding coding;
+    float step;             /* quantisation step, in units of the samples */
+    uint32_t glued;         /* 1: samples that are glued are equal; 0: the border is open, as of texture
+                               coordinates that jump there */
+    uint32_t normalized;    /* 1: integers stand for fractions of the largest of their type */
+    uint64_t coded_bytes;   /* its coded samples in the file */
+    uint64_t decoded_bytes; /* what gim_decode_attribute writes: channels * grid * grid samples */
+} gim_attribute;
+
+/* What the file tells about its attribute number `index`, counted from 0 in file order.
+ * GIM_MISUSE: there is no such attribute. */
+GIM_API gim_status gim_read_attribute(const void* bytes, size_t size, const gim_limits* limits, uint32_t index,
+                                      gim_attribute* attribute);
+
+/* Decodes an attribute: `samples`, aligned as its type wants it, receives decoded_bytes bytes, the channels of
+ * sample 0, of sample 1... Floats are finite.
+ * An attribute's sample (i, j) lies where the geometry's (i, j) * (info.grid - 1) / (attribute.grid - 1) does.
+ * GIM_MISUSE: there is no such attribute, or the workspace is smaller than gim_workspace_size says. */
+GIM_API gim_status gim_decode_attribute(const void* bytes, size_t size, const gim_limits* limits,
+                                        uint32_t index, void* workspace, size_t workspace_size, void* samples);
 
 typedef struct gim_mesh_counts {
     size_t size;        /* sizeof(gim_mesh_counts), set by the caller */

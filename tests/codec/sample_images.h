@@ -3,6 +3,7 @@
 #include "codec/encode.h"
 #include "gim.h"
 
+#include <bit>
 #include <cmath>
 #include <cstdint>
 #include <numbers>
@@ -107,6 +108,21 @@ inline std::vector<float> bumpyImage(std::uint32_t grid, std::uint64_t seed)
                 xyz.push_back(static_cast<float>(smooth + 0.002 * dice.unit()));
             }
         }
+    return xyz;
+}
+
+/// Finite floats of any bits, with zeros of both signs now and then.
+inline std::vector<float> wildImage(std::uint32_t grid, std::uint64_t seed)
+{
+    Dice dice(seed);
+    std::vector<float> xyz;
+    while (xyz.size() < 3 * std::size_t{grid} * grid) {
+        std::uint32_t bits = dice.next() << 16 ^ dice.next();
+        if (dice.below(8) == 0) bits &= 0x80000000u;
+        if (dice.below(8) == 0) bits &= 0x807FFFFFu;
+        const float value = std::bit_cast<float>(bits);
+        if (std::isfinite(value)) xyz.push_back(value);
+    }
     return xyz;
 }
 

@@ -39,8 +39,14 @@ int main(int argc, char** argv)
     write(folder, "v1-wavelet-genus3", samples::encoded(genus3, {GIM_CODING_WAVELET, 0.004f, 0}));
     write(folder, "v1-wavelet-coarse-step", samples::encoded(genus3, {GIM_CODING_WAVELET, 0.3f, 0}));
     write(folder, "v1-wavelet-fine-step", samples::encoded(genus3, {GIM_CODING_WAVELET, 2e-6f, 0}));
-    write(folder, "v1-raw12-genus3", samples::encoded(genus3, {GIM_CODING_RAW12, 0, 0}));
+    write(folder, "v1-12bit-genus3", samples::encoded(genus3, {GIM_CODING_RAW12, 0, 0}));
     write(folder, "v1-float-genus3", samples::encoded(genus3, {GIM_CODING_FLOAT, 0, 0}));
+    write(folder, "v1-float-3x3-disk",
+          samples::encoded(sourceOf(small, 3, samples::diskSeam(3)), {GIM_CODING_FLOAT, 0, 0}));
+    // Floats of all magnitudes, among them some below the normal ones, and zeros of both signs.
+    const std::vector<float> wild = samples::wildImage(33, 4);
+    write(folder, "v1-float-wild",
+          samples::encoded(sourceOf(wild, 33, samples::torusSeam(9)), {GIM_CODING_FLOAT, 0, 0}));
     write(folder, "v1-wavelet-3x3-disk",
           samples::encoded(sourceOf(small, 3, samples::diskSeam(3)), {GIM_CODING_WAVELET, 0.01f, 0}));
 
@@ -49,10 +55,12 @@ int main(int argc, char** argv)
     withNormals.normals = normals;
     write(folder, "v1-wavelet-torus-normals",
           samples::encoded(withNormals, {GIM_CODING_WAVELET, 0.01f, 0.05f}));
-    write(folder, "v1-raw12-torus-normals", samples::encoded(withNormals, {GIM_CODING_RAW12, 0, 0}));
+    write(folder, "v1-12bit-torus-normals", samples::encoded(withNormals, {GIM_CODING_RAW12, 0, 0}));
+    write(folder, "v1-float-torus-normals", samples::encoded(withNormals, {GIM_CODING_FLOAT, 0, 0}));
 
     Source boundary =
         sourceOf(bumpy, 65, {17, 5, {{0, 12, 1}, {1, 10, 0}, {2, 8, 1}, {0, 12, 2}, {2, 8, 2}, {3, 14, 0}}});
+    write(folder, "v1-12bit-boundary", samples::encoded(boundary, {GIM_CODING_RAW12, 0, 0}));
     write(folder, "v1-wavelet-boundary", samples::encoded(boundary, {GIM_CODING_WAVELET, 0.02f, 0}));
 
     write(folder, "v1-surface-genus3", samples::encoded(genus3, {GIM_CODING_SURFACE, 0.004f, 0}));

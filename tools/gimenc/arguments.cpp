@@ -108,6 +108,17 @@ void addOptions(CLI::App& app, Arguments& a)
             ->check(CLI::IsMember({"12", "float"}));
     target->require_option(0, 1);
     app.add_option("--normals", a.normals, "add a normal image of this many samples a side, 2^k + 1");
+    app.add_option(
+           "--attribute", a.attributes,
+           "add an image of the vertices' color, uv or other attribute; may be repeated; GRID: samples "
+           "a side, 2^k + 1 (default: as the geometry)")
+        ->type_name("NAME[:GRID][:lossless]")
+        ->allow_extra_args(false)
+        ->check(CLI::Validator(
+            [](const std::string& text) {
+                return parseAttribute(text) ? std::string() : text + " is not NAME[:GRID][:lossless]";
+            },
+            ""));
     auto* noFit = app.add_flag(
         "--no-fit", a.noFit,
         "keep samples on the mesh; else they move to where the triangles between them fit it best");
@@ -177,6 +188,7 @@ std::optional<std::string> clash(const Arguments& a)
                                                   {"--no-fit", a.noFit},
                                                   {"--features", a.features},
                                                   {"--close-holes", a.closeHoles.has_value()},
+                                                  {"--attribute", !a.attributes.empty()},
                                                   {"--max-genus", a.maxGenus || a.removeNoise}};
     for (const auto& [name, isGiven] : given)
         if (isGiven) return std::string(name) + " is for meshes: --from-image takes the image as it is";
@@ -236,6 +248,7 @@ std::vector<std::string> fileOptions(const Arguments& a)
     if (a.lowest != 0) add("--lowest", std::to_string(a.lowest));
     if (a.layout != "auto") add("--layout", a.layout);
     if (a.normals != 0) add("--normals", std::to_string(a.normals));
+    for (const std::string& attribute : a.attributes) add("--attribute", attribute);
     if (a.noFit) words.push_back("--no-fit");
     if (a.features) words.push_back("--features");
     if (!a.component.empty()) add("--component", a.component);
@@ -247,6 +260,25 @@ std::vector<std::string> fileOptions(const Arguments& a)
     if (a.maxGenus) add("--max-genus", std::to_string(*a.maxGenus));
     if (a.removeNoise) add("--max-genus", "auto");
     return words;
+}
+
+std::optional<AttributeRequest> parseAttribute(const std::string& text)
+{
+    AttributeRequest request;
+    std::string_view rest = text;
+    constexpr std::string_view kLossless = ":lossless";
+    if (rest.ends_with(kLossless)) {
+        request.lossless = true;
+        rest.remove_suffix(kLossless.size());
+    }
+    if (const size_t colon = rest.rfind(':'); colon != rest.npos) {
+        const char* last = rest.data() + rest.size();
+        const auto [end, error] = std::from_chars(rest.data() + colon + 1, last, request.grid);
+        if (error != std::errc() || end != last || request.grid < 3) return std::nullopt;
+        rest = rest.substr(0, colon);
+    }
+    request.name = rest;
+    return rest.empty() ? std::nullopt : std::optional(request);
 }
 
 ReadOptions readOptions(const Arguments& a)
@@ -264,6 +296,9 @@ EncodeOptions encodeOptions(const Arguments& a)
                      : a.layout == "octahedral" ? SquareLayout::Octahedral
                                                 : SquareLayout::Auto;
     options.normals = a.normals;
+    for (const std::string& text : a.attributes)
+        if (std::optional<AttributeRequest> request = parseAttribute(text))
+            options.attributes.push_back(std::move(*request));
     options.fit = !a.noFit;
     options.features = a.features;
     options.threads = a.threads;

@@ -31,6 +31,7 @@ struct Arguments
     std::optional<size_t> bytes; ///< of bytes, psnr, maxError and raw exactly one is set
     std::optional<double> psnr, maxError;
     std::string raw, component, json;
+    std::vector<std::string> attributes; ///< NAME[:GRID][:lossless]
     std::string layout = "auto";
     std::string coding = "surface";
     std::string density = "curvature";
@@ -66,6 +67,9 @@ Result<Arguments> parseLine(const std::vector<std::string>& words, const Argumen
 
 /// The options that decide what is in the file, defaults left out, always in the same order and spelling.
 std::vector<std::string> fileOptions(const Arguments& a);
+
+/// "color", "weights:129:lossless"
+std::optional<AttributeRequest> parseAttribute(const std::string& text);
 
 ReadOptions readOptions(const Arguments& a);
 EncodeOptions encodeOptions(const Arguments& a);

@@ -109,11 +109,9 @@ nlohmann::ordered_json report(const EncodedMesh& encoded, const SimplifiedSurfac
     json["layout"] = encoded.image                                ? "image"
                      : encoded.layout == SquareLayout::Octahedral ? "octahedral"
                                                                   : "cut";
-    json["bytes"] = {{"total", encoded.file.size()},
-                     {"container", info.container_bytes},
-                     {"sideband", info.seam_bytes},
-                     {"geometry", info.geometry_bytes},
-                     {"normals", info.normal_bytes}};
+    json["bytes"] = {{"total", encoded.file.size()}, {"container", info.container_bytes},
+                     {"sideband", info.seam_bytes},  {"geometry", info.geometry_bytes},
+                     {"normals", info.normal_bytes}, {"attributes", info.attribute_bytes}};
     json["psnr"] = finite(encoded.psnr);
     json["max_error"] = encoded.maxError;
     json["image"] = nullptr;
@@ -177,7 +175,7 @@ private:
         return take(encodeImage(*image, options, a_.tolerance.value_or(kSeamTolerance)), {});
     }
 
-    Failure fromMesh(const EncodeOptions& options)
+    Failure fromMesh(EncodeOptions options)
     {
         Result<MeshFile> read = readMesh(a_.input, readOptions(a_));
         if (!read) {
@@ -193,6 +191,7 @@ private:
             simplified_ = std::move(*result);
             seconds_.topology = secondsSince(start_) - seconds_.read;
         }
+        options.attributed = &read->attributed;
         return take(simplified_.changed() ? encodeAgainst(read->mesh, simplified_.mesh, options)
                                           : encodeMesh(read->mesh, options),
                     warnings(read->report));

@@ -3,6 +3,7 @@
 #include "gimg/image_io.h"
 #include "gimg/mesh.h"
 #include "gimg/result.h"
+#include "gimg/vertex_attribute.h"
 
 #include <gim.h>
 
@@ -12,12 +13,20 @@
 
 namespace gimg {
 
+/// An attribute's image: `values` are by sample, in rows.
+struct AttributeImage
+{
+    gim_attribute info;
+    VertexAttribute samples;
+};
+
 /// A .gim file's samples. The C functions of gim.h do the same without allocating.
 struct DecodedImages
 {
     gim_info info;
     FloatImage geometry;
-    FloatImage normals;    ///< empty if the file has none
+    FloatImage normals; ///< empty if the file has none
+    std::vector<AttributeImage> attributes;
     bool isPrefix = false; ///< the file was cut short
 };
 
@@ -30,6 +39,13 @@ Result<DecodedImages> decodeImages(std::span<const uint8_t> file, unsigned flags
 /// Errors: as decodeImages; BadArgument for a level that the file does not have.
 Result<Mesh> levelMesh(std::span<const uint8_t> file, const DecodedImages& images, unsigned level,
                        unsigned flags = 0);
+
+/// The attributes of levelMesh's vertices. Where an attribute's grid is coarser than the level, values lie
+/// between its samples, bilinearly.
+/// Errors: as levelMesh.
+Result<std::vector<VertexAttribute>> levelAttributes(std::span<const uint8_t> file,
+                                                     const DecodedImages& images, unsigned level,
+                                                     unsigned flags = 0);
 
 /// The triangles of a square geometry image as levelMesh has them, but with open borders, no samples glued;
 /// vertex j * width + i is sample (i, j).

@@ -7,6 +7,7 @@
 #include "gimg/linear_maps.h"
 #include "gimg/mesh.h"
 #include "gimg/result.h"
+#include "gimg/vertex_attribute.h"
 
 #include <cstddef>
 #include <cstdint>
@@ -48,6 +49,19 @@ struct EncodeGoal
     double maxError = 0.001; ///< fraction of the diagonal, see SurfaceDistance::hausdorff
 };
 
+/// An attribute that is to go into the file.
+///
+/// Of the bytes that are neither container nor seam normals get a quarter and each attribute that is not
+/// lossless an eighth, all of them together at most a half; lossless ones take what they need first. Where
+/// the goal is a quality, normals have a step of 1/32 and attributes of 1/64 of the span of their values. In
+/// raw files attributes are lossless.
+struct AttributeRequest
+{
+    std::string name;
+    int grid = 0;          ///< samples a side, 2^k + 1; 0: as many as the geometry has
+    bool lossless = false; ///< the samples come back as they are
+};
+
 struct EncodeOptions : EncodeGoal
 {
     static constexpr int kLeastEffort = 1, kMostEffort = 9;
@@ -61,7 +75,10 @@ struct EncodeOptions : EncodeGoal
     int lowest = 0; ///< lowest level of detail; 0 chooses
     SquareLayout layout = SquareLayout::Auto;
     int normals = 0; ///< samples a side of the normal image, 2^j + 1; 0: none
-    int threads = 0; ///< 0: one a core. The file does not depend on it.
+    std::vector<AttributeRequest> attributes;
+    const AttributedSurface* attributed = nullptr; ///< what has them, see MeshFile; for encodeMesh alone. Not
+                                                   ///< needed any more when the encoder is prepared.
+    int threads = 0;                               ///< 0: one a core. The file does not depend on it.
     EncodeProgress progress;
     MapKind param = MapKind::Stretch; ///< how the surface is mapped to the square
     Density density = Density::Curvature;

@@ -3,6 +3,7 @@
 #include "gimg/color.h"
 #include "gimg/mesh.h"
 #include "gimg/result.h"
+#include "gimg/vertex_attribute.h"
 
 #include <cstdint>
 #include <span>
@@ -57,6 +58,9 @@ struct MeshFile
 {
     Mesh mesh; ///< connected, manifold, consistently oriented, finite, every vertex in a face
     RepairReport report;
+    /// The same surface as the file has it, with what it tells of its vertices: PLY's vertex properties, and
+    /// the colours that OBJ files may have. Its vertices are not welded. Empty if the file tells nothing.
+    AttributedSurface attributed;
 };
 
 /// Reads OBJ, PLY (ascii, binary of either byte order), OFF or STL (ascii, binary), told apart by the
@@ -91,11 +95,18 @@ enum class Encoding
 /// exactly (PLY uses float32 where that is exact, else float64), except in STL, which holds float32 and no
 /// shared vertices.
 /// @param normals   none, or one for each vertex; STL has facet normals only and ignores them
+/// @param attributes  of the vertices. PLY takes all: "color" of three or four channels as red, green, blue
+///                  and alpha (uchar, or ushort), "uv" of two as s and t, others under their names; integers
+///                  of "color" and others as such. OBJ takes "color", after the positions, from 0 to 1; OFF
+///                  and STL take none.
 /// @param encoding  of PLY and STL; STL knows no BinaryBigEndian
 /// Errors: FormatUnknown, BadArgument (an index out of range, a wrong number of normals), NotFinite,
 /// FileNotWritable.
 Status writeMesh(const Mesh& mesh, const std::string& path, std::span<const Vec3> normals = {},
-                 Encoding encoding = Encoding::Binary);
+                 Encoding encoding = Encoding::Binary, std::span<const VertexAttribute> attributes = {});
+
+/// Whether writeMesh writes this attribute into a file of that name.
+bool takesAttribute(const std::string& path, const VertexAttribute& attribute);
 
 /// Writes a PLY file whose vertices have a colour (uchar red, green, blue) and a number of their own (float
 /// quality), under the names that MeshLab and Blender read. Positions as in writeMesh.
