@@ -6,9 +6,7 @@
 #include "mixer.h"
 #include "subbands.h"
 
-#include <cmath>
 #include <cstring>
-#include <type_traits>
 
 namespace gimg::codec {
 

@@ -20,7 +20,7 @@ const char* nameOf(gim_coding coding)
     case GIM_CODING_WAVELET:
         return "wavelet";
     case GIM_CODING_RAW12:
-        return "raw12";
+        return "12-bit";
     case GIM_CODING_FLOAT:
         return "float";
     case GIM_CODING_SURFACE:

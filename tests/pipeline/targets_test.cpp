@@ -149,6 +149,8 @@ TEST(EncodeRaw, FloatIsBetterThan12BitsAndBothCloseToTheSurface)
     EXPECT_GT(exact.psnr, integers.psnr);
     EXPECT_GT(integers.psnr, 60);
     EXPECT_GT(exact.file.size(), integers.file.size());
+    EXPECT_LT(integers.file.size(), 129u * 129 * 9 / 2 * 3 / 10); // 36 bits a sample if they were packed
+    EXPECT_LT(exact.file.size(), 129u * 129 * 12 * 6 / 10);
     // 12 bits over a cube of side 8: at most half a step off, 8 / 4095 / 2 a coordinate.
     const Mesh a = decodedLevel(exact, 0), b = decodedLevel(integers, 0);
     ASSERT_EQ(a.vertexCount(), b.vertexCount());

@@ -659,7 +659,7 @@ def read_wavelet(n, content, seam, fuse, diffuse):
     return out
 
 
-# --- section 5.4: surface
+# --- section 5.3: surface
 
 def dot(a, b):
     return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]

@@ -38,7 +38,7 @@ for file in "$tests"/malformed/*.gim; do
     esac
     refused 1 "$gimdec" "$file" "$work/mesh.ply"
     case $file in
-    */corrupt-raw12-* | */corrupt-float-* | */corrupt-step-* | */corrupt-lowest-* | */corrupt-geometry-* | */unsupported-* | */more-input-*)
+    */corrupt-12bit-step-* | */corrupt-least-* | */corrupt-step-* | */corrupt-lowest-* | */corrupt-geometry-* | */unsupported-* | */more-input-*)
         refused 1 "$giminfo" "$file"
         ;;
     esac
