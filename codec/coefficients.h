@@ -252,6 +252,10 @@ void codeCoarse(Coder& coder, ExpGolombModels<kCoarseBits>& models, QuantizedIma
             std::int64_t& value = image.coarse[c][k];
             const std::int64_t expected =
                 k == 0 ? 0 : image.coarse[c][k % kCoarsest == 0 ? k - kCoarsest : k - 1];
+            if (coder.hasEnded()) {
+                value = expected;
+                continue;
+            }
             const std::int64_t difference = Coder::kDecodes ? 0 : value - expected;
             std::uint64_t magnitude = difference < 0 ? static_cast<std::uint64_t>(-difference)
                                                      : static_cast<std::uint64_t>(difference);
@@ -260,6 +264,7 @@ void codeCoarse(Coder& coder, ExpGolombModels<kCoarseBits>& models, QuantizedIma
                 unsigned bits = 0;
                 while (magnitude >> bits != 0) ++bits;
                 bits = static_cast<unsigned>(coder.raw(6, bits));
+                if (coder.hasEnded()) bits = 0;
                 if (bits > kCoarseBits) return coder.fail();
                 magnitude = codeRaw(coder, bits, magnitude);
             } else {

@@ -107,22 +107,4 @@ bool codeMixed(Coder& coder, BitModel* const (&models)[Count], MixWeights<Count>
     return one;
 }
 
-/// The same with two sets of weights, chosen by different contexts: each estimate counts with the mean of its
-/// two.
-template <unsigned Count, class Coder>
-bool codeMixed(Coder& coder, BitModel* const (&models)[Count], MixWeights<Count>& first,
-               MixWeights<Count>& second, bool bit)
-{
-    const Stretched<Count> stretched(models);
-    const int sum = first.times(stretched.value) + second.times(stretched.value);
-    const std::uint32_t zero = squash(sum >> (MixWeights<Count>::kUnitBits + 1));
-    const bool one = coder.code(zero, bit);
-    if (!Coder::kAdapts) return one;
-    const int error = (one ? 0 : 1 << kProbabilityBits) - static_cast<int>(zero);
-    first.learn(stretched.value, error);
-    second.learn(stretched.value, error);
-    for (unsigned k = 0; k < Count; ++k) models[k]->update(one);
-    return one;
-}
-
 } // namespace gimg::codec

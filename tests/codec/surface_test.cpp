@@ -182,7 +182,7 @@ TEST(SurfaceFrame, TangentialStepsFollowFlatnessUpToTheLevelsLimit)
     const auto ratio = [&](double flatness, double largest) {
         parameters.flatness = flatness;
         level.largestRatio = largest;
-        const Frame frame = frameAt(planes, level, parameters, Horizontal, 1, 2);
+        const Frame frame = frameAt(planes, level, parameters, 1, 2);
         EXPECT_EQ(frame.step[1], frame.step[2]);
         return frame.step[1] / frame.step[0];
     };

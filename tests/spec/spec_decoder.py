@@ -52,17 +52,19 @@ def read_chunks(data):
 
 class Model:
     def __init__(self):
-        self.quick = self.slow = 1 << 15
-        self.seen = 0
+        self.v, self.seen = 1 << 15, 0
 
     def estimate(self):
-        return (self.quick + self.slow) >> 2
+        return self.v >> 1
 
     def update(self, bit):
-        h = (self.seen + 2).bit_length() - 1
-        move = lambda v, k: v - (v >> k) if bit else v + ((65536 - v) >> k)
-        self.quick, self.slow = move(self.quick, min(4, h)), move(self.slow, h)
-        self.seen = min(self.seen + 1, 126)
+        rate = 327680 // (10 * self.seen + 16)
+        self.v += ((64 if bit else 65471) - self.v) * rate >> 15
+        self.seen = min(self.seen + 1, 62)
+
+
+def start_weights(count):
+    return [4096 * 13 // 10 // count] * count
 
 
 L = [11, 18, 30, 49, 81, 133, 219, 360, 589, 961, 1554, 2486, 3906, 5978, 8813, 12371, 16384, 20397, 23955,
@@ -84,18 +86,21 @@ for _k in range(4096):
 
 
 class Decoder:
-    def __init__(self, data):
-        self.data, self.at, self.range, self.code = data, 0, M32, 0
+    def __init__(self, data, is_prefix=False):
+        self.data, self.at, self.range, self.code, self.is_prefix = data, 0, M32, 0, is_prefix
         for _ in range(4):
             self.code = self.code << 8 | self.byte()
 
     def byte(self):
         self.at += 1
-        demand(self.at <= len(self.data) + 4)
+        demand(self.is_prefix or self.at <= len(self.data) + 4)
         return self.data[self.at - 1] if self.at <= len(self.data) else 0
 
     def finish(self):
-        demand(self.at >= len(self.data))
+        demand(self.is_prefix or self.at >= len(self.data))
+
+    def has_ended(self):
+        return self.is_prefix and self.at > len(self.data)
 
     def renormalise(self):
         while self.range < 1 << 24:
@@ -131,24 +136,12 @@ class Decoder:
 
     def mixed(self, models, weights):
         s = [STRETCH[m.estimate() >> 3] for m in models]
-        z = squash(sum(w * x for w, x in zip(weights, s)) >> 16)
+        z = squash(sum(w * x for w, x in zip(weights, s)) >> 12)
         bit = self.with_probability(z)
-        e = (0 if bit else 1 << 15) - z
+        e = ((0 if bit else 1 << 15) - z) >> 3
         for k, model in enumerate(models):
-            weights[k] = max(-(1 << 20), min(1 << 20, weights[k] + ((s[k] * e + (1 << 14)) >> 15)))
-            model.update(bit)
-        return bit
-
-
-    def mixed_twice(self, models, first, second):
-        s = [STRETCH[m.estimate() >> 3] for m in models]
-        parts = [max(-2047, min(2047, sum(w * x for w, x in zip(weights, s)) >> 16)) for weights in (first, second)]
-        bit = self.with_probability(squash(sum(parts) >> 1))
-        for weights, part in zip((first, second), parts):
-            e = (0 if bit else 1 << 15) - squash(part)
-            for k in range(len(weights)):
-                weights[k] = max(-(1 << 20), min(1 << 20, weights[k] + ((s[k] * e + (1 << 14)) >> 15)))
-        for model in models:
+            moves = 2 * s[k] * e >> 16
+            weights[k] = max(-32600, min(32600, weights[k] + (moves + 1 >> 1)))
             model.update(bit)
         return bit
 
@@ -258,7 +251,7 @@ def f32(x):
     return struct.unpack("<f", struct.pack("<f", x))[0]
 
 
-def read_image(content, seam, fuse, diffuse):
+def read_image(content, seam, fuse, diffuse, is_prefix=False):
     kind = content[0]
     demand(kind >> 6 == 0 and 1 <= (kind & 15) <= 12, "UNSUPPORTED")
     n = (1 << (kind & 15)) + 1
@@ -266,7 +259,7 @@ def read_image(content, seam, fuse, diffuse):
     if coding == 0:
         return n, coding, read_wavelet(n, content[1:], seam, fuse, diffuse)
     if coding == 3:
-        return n, coding, read_surface(n, content[1:], seam)
+        return n, coding, read_surface(n, content[1:], seam, is_prefix)
     least_of = classes(seam, n)
     if coding == 1:
         least, (step,) = struct.unpack_from("<3f", content, 1), struct.unpack_from("<f", content, 13)
@@ -366,7 +359,7 @@ class ExactImage:
         for p, least in enumerate(least_of):
             self.members.setdefault(least, []).append(border_sample(n, p))
         self.glued = {at: group for group in self.members.values() for at in group}
-        self.models, self.weights = Models(), Models(lambda: [65536 * 13 // 10 // 3] * 3)
+        self.models, self.weights = Models(), Models(lambda: start_weights(3))
         half = (n - 1) // 2
         for j in range(0, n, half):
             for i in range(0, n, half):
@@ -523,10 +516,10 @@ def sg(x):
     return (x > 0) - (x < 0)
 
 
-def read_coarse(d):
+def read_coarse(d, coarse_code=None, components=3):
     coarse = [[0] * 9 for _ in range(3)]
-    coarse_code = ExpGolomb(50)
-    for c in range(3):
+    coarse_code = coarse_code or ExpGolomb(50)
+    for c in range(components):
         for k in range(9):
             if k == 0:
                 b = d.raw(6)
@@ -537,7 +530,7 @@ def read_coarse(d):
                 expected = coarse[c][k - 3 if k % 3 == 0 else k - 1]
             if magnitude and d.raw(1):
                 magnitude = -magnitude
-            coarse[c][k] = expected + magnitude
+            coarse[c][k] = expected if d.has_ended() else expected + magnitude
             demand(abs(coarse[c][k]) < 1 << 50)
     return coarse
 
@@ -546,8 +539,8 @@ def read_coefficients(n, d):
     coarse = read_coarse(d)
     empty_models, magnitude_models, sign_models = Models(), Models(), Models()
     larger = Models(lambda: ExpGolomb(30))
-    weights = Models(lambda: [65536 * 13 // 10 // 5] * 5)
-    sign_weights = Models(lambda: [65536 * 13 // 10 // 3] * 3)
+    weights = Models(lambda: start_weights(5))
+    sign_weights = Models(lambda: start_weights(3))
     bands = {}
     m = 3
     while 2 * m - 1 <= n:
@@ -736,27 +729,196 @@ def transform_along_seam(image, n, border):
             border.average(image, n)
 
 
-class SurfaceModels:
+class DetailModels:
     def __init__(self):
-        self.empty, self.block, self.magnitude, self.sign = Models(), Models(), Models(), Models()
-        self.larger = Models(lambda: ExpGolomb(30))
-        self.weights = Models(lambda: [65536 * 13 // 10 // 4] * 4)
-        self.block_weights = Models(lambda: [65536 * 13 // 10 // 3] * 3)
-        self.sign_weights = Models(lambda: [65536 * 13 // 10 // 4] * 4)
+        self.coarse = ExpGolomb(50)
+        self.empty, self.block, self.growth, self.next, self.sign = Models(), Models(), Models(), Models(), Models()
+        self.lonely = Models()
+        self.block_weights = Models(lambda: start_weights(3))
+        self.growth_weights = Models(lambda: start_weights(5))
+        self.sign_weights = Models(lambda: start_weights(4))
 
 
-def read_surface(n_file, content, seam):
+class Level:
+    """Details by (component, i, j): q in steps, without the missing bits; known, their magnitudes without these."""
+
+    def __init__(self, n, mates):
+        self.n, self.mates, self.B = n, mates, max(1, (n - 1) // 8)
+        self.q, self.known, self.filled, self.missing, self.is_filled = {}, {}, set(), 0, False
+
+    def block(self, i, j):
+        return min(i // 8, self.B - 1), min(j // 8, self.B - 1)
+
+    def has(self, e, block):
+        return (e,) + block in self.filled
+
+    def places(self):
+        for band, (i0, j0) in enumerate([(1, 0), (0, 1), (1, 1)]):
+            for j in range(j0, self.n, 2):
+                for i in range(i0, self.n, 2):
+                    bi, bj = self.block(i, j)
+                    if not self.has(0, (bi, bj)) and not self.has(1, (bi, bj)):
+                        continue
+                    other = self.mates.get((i, j))
+                    if other:
+                        other_band = 1 if other[0] % 2 == 0 else 0
+                        if (other_band, other[1], other[0]) < (band, j, i):
+                            continue
+                    yield band, i, j, (bi, bj), other
+
+
+def read_all_details(d, models, border, n_file, components):
+    """The coarse image, and the levels."""
+    passes = d.raw(5)
+    demand(passes <= 24)
+    coarse = read_coarse(d, models.coarse, components)
+    levels, m = [], 3
+    while m < n_file:
+        levels.append(Level(2 * m - 1, border.mates(2 * m - 1) if border.glued(m) else {}))
+        m = 2 * m - 1
+    for k in reversed(range(passes)):
+        if d.has_ended() or not read_pass(d, models, levels, components, k):
+            break
+    return coarse, levels
+
+
+def read_pass(d, models, levels, components, k):
+    for v, level in enumerate(levels):
+        level.missing = k
+        if level.is_filled:
+            for key in level.known:
+                level.known[key] = min(255, 2 * level.known[key])
+        else:
+            empty = d.bit(models.empty[v])
+            if d.has_ended():
+                return False
+            if empty:
+                continue
+            level.is_filled = True
+        coarser = levels[v - 1] if v else None
+        finer = levels[v + 1] if v + 1 < len(levels) else None
+        if not read_blocks(d, models, v, level, coarser, components):
+            return False
+        for band, i, j, block, other in level.places():
+            for c in range(components):
+                if not level.has(min(c, 1), block):
+                    continue
+                q = read_bit(d, models, level, coarser, finer, v, k, band, i, j, c, components)
+                if d.has_ended():
+                    return False
+                if q is None:
+                    continue
+                known = min(255, level.known.get((c, i, j), 0) + 1)
+                for at in ((i, j), other) if other else ((i, j),):
+                    level.q[(c,) + at], level.known[(c,) + at] = q, known
+    return True
+
+
+def read_blocks(d, models, v, level, coarser, components):
+    before = coarser.known if coarser else {}
+    directions = 1 if components == 1 else 2
+    for bj in range(level.B):
+        for bi in range(level.B):
+            if all(level.has(e, (bi, bj)) for e in range(directions)):
+                continue
+
+            def sum_of(e, least, most):
+                return sum(before.get((c, 4 * bi + x, 4 * bj + y), 0) for c in ((0,), (1, 2))[e]
+                           for y in range(least, most + 1) for x in range(least, most + 1))
+
+            g = 0
+            for e in range(directions):
+                if not level.has(e, (bi, bj)):
+                    f = lambda x, y: int(level.has(e, (bi + x, bj + y)))
+                    o = 2 * (f(-1, 0) + f(0, -1)) + f(-1, -1) + f(1, -1) + f(1, 0) + f(0, 1)
+                    below = sum_of(e, 0, 4)
+                    x, y = cls(below, 13), cls(sum_of(e, -2, 6) - below, 13)
+                    keys = [(0, e, g, v, o), (1, e, g, o, x), (2, e, g, min(x, 9), y)]
+                    fills = d.mixed([models.block[key] for key in keys], models.block_weights[e, g])
+                    if d.has_ended():
+                        return False
+                    if not fills:
+                        continue
+                    level.filled.add((e, bi, bj))
+                g = 1
+    return True
+
+
+def read_bit(d, models, level, coarser, finer, v, k, band, i, j, c, components):
+    """The detail with bit k, None if that is 0."""
+    e = min(c, 1)
+    K = lambda x, y, c=c: level.known.get((c, i + x, j + y), 0)
+    q = lambda x, y: level.q.get((c, i + x, j + y), 0)
+    pi, pj = i // 4 * 2 + i % 2, j // 4 * 2 + j % 2
+    across, along = K(-2, 0) + K(2, 0), K(0, -2) + K(0, 2)
+    dia = K(-2, -2) + K(2, -2) + K(-2, 2) + K(2, 2)
+    far = K(-4, 0) + K(4, 0) + K(0, -4) + K(0, 4)
+    sib = 0
+    if band != 2:
+        sib += K(-1, -1) + K(1, -1) + K(-1, 1) + K(1, 1)
+    if band != 1:
+        sib += K(0, -1) + K(0, 1)
+    if band != 0:
+        sib += K(-1, 0) + K(1, 0)
+    up = below = 0
+    if coarser:
+        p = lambda x, y: coarser.known.get((c, pi + x, pj + y), 0)
+        up = 2 * p(0, 0) + p(-2, 0) + p(2, 0) + p(0, -2) + p(0, 2)
+    if finer:
+        ci, cj = i // 2 * 4 + i % 2, j // 2 * 4 + j % 2
+        below = 2 * sum(finer.known.get((c, ci + x, cj + y), 0) for x in (0, 2) for y in (0, 2))
+    others = 2 * sum(level.known.get((o, i, j), 0) for o in range(3) if o != c)
+    near = across + along + (dia + 1) // 2
+    total = 2 * (near + others) + up + sib + below + far // 2
+    t = cls(total, 23)
+    here = level.q.get((c, i, j), 0)
+    if here:
+        known = K(0, 0)
+        size = 0 if known < 4 else 1 if known < 8 else 2 if known < 16 else 3
+        if not d.bit(models.next[size, t]):
+            return None
+        return here + (1 << k) if here > 0 else here - (1 << k)
+    if total == 0:
+        grows = d.bit(models.lonely[v, band, e])
+    else:
+        keys = [(0, cls(across, 7), cls(along, 7), cls(dia, 7), e), (1, t, c, others != 0),
+                (2, cls(up, 9), cls(sib, 11), band, e), (3, cls(below, 9), cls(near, 7), band, e),
+                (4, cls(near + far, 13), cls(2 * others + sib, 11), e)]
+        grows = d.mixed([models.growth[key] for key in keys], models.growth_weights[t, e])
+    if not grows:
+        return None
+    if band == 2:
+        F = q(0, -1) + q(0, 1) + q(-1, 0) + q(1, 0)
+    else:
+        F = q(-1, -1) - q(1, -1) - q(-1, 1) + q(1, 1)
+    parent = sg(coarser.q.get((c, pi, pj), 0)) if coarser else 0
+    W = sg(q(-2, 0))
+    keys = [(0, band, W, sg(q(2, 0)), sg(q(0, -2)), sg(q(0, 2)), e), (1, band, parent, sg(F), W, e),
+            (2, band, sg(q(-2, -2) + q(2, 2)), sg(q(2, -2) + q(-2, 2)), sg(q(-4, 0) + q(4, 0)),
+             sg(q(0, -4) + q(0, 4)), e),
+            (3, band, parent, sg(q(-2, 0) + q(2, 0)), sg(q(0, -2) + q(0, 2)), e)]
+    return -(1 << k) if d.mixed([models.sign[key] for key in keys], models.sign_weights[band, e]) else 1 << k
+
+
+def read_surface(n_file, content, seam, is_prefix):
     step, ratios, limits = struct.unpack_from("<fBB", content)
     demand(2.0 ** -100 <= step <= 2.0 ** 100)
-    d = Decoder(content[6:])
-    border, models = Border(seam, n_file), SurfaceModels()
-    surface = [[[q * step for q in image[3 * j:3 * j + 3]] for j in range(3)] for image in read_coarse(d)]
+    d = Decoder(content[6:], is_prefix)
+    border = Border(seam, n_file)
+    coarse, levels = read_all_details(d, DetailModels(), border, n_file, 3)
+    d.finish()
+    surface = build(border, coarse, levels, n_file, 3, SurfaceFrames(step, ratios, limits))
+    return [f32(surface[c][j][i]) for j in range(n_file) for i in range(n_file) for c in range(3)]
+
+
+def build(border, coarse, levels, n_file, components, frames):
+    surface = [[[q * frames.step for q in image[3 * j:3 * j + 3]] for j in range(3)] for image in coarse]
     if border.glued(3):
         for image in surface:
             border.average(image, 3)
-    before, m, v = {}, 3, 0
-    while m < n_file:
-        n = 2 * m - 1
+    m = 3
+    for v, level in enumerate(levels):
+        n = level.n
         glued = border if border.glued(m) else None
         prediction = []
         for image in surface:
@@ -766,9 +928,24 @@ def read_surface(n_file, content, seam):
                     fine[2 * j][2 * i] = image[j][i] * (1.0 / A)
             transform_along_seam(fine, n, glued)
             prediction.append(fine)
-        q, details, any_coded = read_details(d, models, prediction, n, v, step, ratios, limits, glued, before)
-        if any_coded:
-            for c in range(3):
+        if level.is_filled:
+            frames.begin(prediction, n, v, level.mates)
+            details = {}
+            middle = 0.5 * ((1 << level.missing) - 1)
+            for band, i, j, block, other in level.places():
+                q = [level.q.get((c, i, j), 0) for c in range(3)]
+                if not any(q):
+                    continue
+                axes, steps = frames.at(i, j)
+                detail = (0.0, 0.0, 0.0)
+                for c in range(components):
+                    if q[c]:
+                        value = q[c] - middle if q[c] < 0 else q[c] + middle
+                        detail = add(detail, times(value * steps[c], axes[c]))
+                details[i, j] = detail
+                if other:
+                    details[other] = detail
+            for c in range(components):
                 fine = [[0.0] * n for _ in range(n)]
                 for (i, j), value in details.items():
                     fine[j][i] = value[c] * A if i % 2 and j % 2 else value[c]
@@ -779,46 +956,57 @@ def read_surface(n_file, content, seam):
         if not glued and border.glued(n):
             for image in prediction:
                 border.average(image, n)
-        surface, before, m, v = prediction, q, n, v + 1
-    d.finish()
-    return [f32(surface[c][j][i]) for j in range(n_file) for i in range(n_file) for c in range(3)]
+        surface, m = prediction, n
+    return surface
 
 
 def root(k):
     return [1.0, 1.189207115002721, 1.4142135623730951, 1.6817928305074292][k % 4] * float(1 << k // 4)
 
 
-def read_details(d, models, prediction, n, v, step, ratios, limits, glued, before):
-    last = n - 1
-    mate = glued.mates(n) if glued else {}
+class Prediction:
+    """A level before its details."""
 
-    def P(i, j):
-        return (prediction[0][j][i], prediction[1][j][i], prediction[2][j][i])
+    def begin(self, prediction, n, v, mate):
+        self.prediction, self.last, self.mate = prediction, n - 1, mate
 
-    mean = 0.0
-    for j in range(last):
-        for i in range(last):
-            c = cross(sub(P(i + 1, j + 1), P(i, j)), sub(P(i, j + 1), P(i + 1, j)))
-            mean += math.sqrt(dot(c, c))
-    mean = mean * 0.5 / (float(last) * float(last))
-    limit, flatness = 1 + (limits & 15) / 4, root(2 * (limits >> 4))
-    most = root(min(v * (ratios & 15), 2 * (ratios >> 4)))
+    def P(self, i, j):
+        return self.prediction[0][j][i], self.prediction[1][j][i], self.prediction[2][j][i]
 
-    def derivative(i, j, x, y):
+    def derivative(self, i, j, x, y):
+        P, last = self.P, self.last
         i0, j0, i1, j1 = i - x, j - y, i + x, j + y
         low, high = i0 >= 0 and j0 >= 0, i1 <= last and j1 <= last
         if low and high:
             return sub(P(i1, j1), P(i0, j0))
         inner = P(i1, j1) if high else P(i0, j0)
-        if (i, j) in mate:
-            a, b = mate[i, j]
-            outer = P(min(max(a, 1), last - 1) if a in (0, last) else a, min(max(b, 1), last - 1) if b in (0, last) else b)
+        if (i, j) in self.mate:
+            a, b = self.mate[i, j]
+            inside = lambda k: min(max(k, 1), last - 1) if k in (0, last) else k
+            outer = P(inside(a), inside(b))
         else:
             outer = add(P(i, j), sub(P(i, j), inner))
         return sub(inner, outer) if high else sub(outer, inner)
 
-    def frame(i, j, band):
-        di, dj = derivative(i, j, 1, 0), derivative(i, j, 0, 1)
+
+class SurfaceFrames(Prediction):
+    def __init__(self, step, ratios, limits):
+        self.step, self.ratios, self.limits = step, ratios, limits
+
+    def begin(self, prediction, n, v, mate):
+        super().begin(prediction, n, v, mate)
+        mean, P = 0.0, self.P
+        for j in range(self.last):
+            for i in range(self.last):
+                c = cross(sub(P(i + 1, j + 1), P(i, j)), sub(P(i, j + 1), P(i + 1, j)))
+                mean += math.sqrt(dot(c, c))
+        self.mean = mean * 0.5 / (float(self.last) * float(self.last))
+        self.most = root(min(v * (self.ratios & 15), 2 * (self.ratios >> 4)))
+
+    def at(self, i, j):
+        P, last, mean, most = self.P, self.last, self.mean, self.most
+        limit, flatness = 1 + (self.limits & 15) / 4, root(2 * (self.limits >> 4))
+        di, dj = self.derivative(i, j, 1, 0), self.derivative(i, j, 0, 1)
         g = cross(di, dj)
         G, I = dot(g, g), dot(di, di)
         if G > 0 and I > 0:
@@ -830,7 +1018,7 @@ def read_details(d, models, prediction, n, v, step, ratios, limits, glued, befor
         if mean > 0:
             r, squared = area / mean, limit * limit
             f = math.sqrt(squared if r * limit * limit < 1 else 1.0 / squared if r > squared else 1.0 / r)
-        w = step * f
+        w = self.step * f
         si = sj = (0.0, 0.0, 0.0)
         if 0 < i < last:
             si = sub(add(P(i + 1, j), P(i - 1, j)), times(2.0, P(i, j)))
@@ -838,103 +1026,7 @@ def read_details(d, models, prediction, n, v, step, ratios, limits, glued, befor
             sj = sub(add(P(i, j + 1), P(i, j - 1)), times(2.0, P(i, j)))
         bent, flat = dot(si, si) + dot(sj, sj), flatness * flatness * area
         ratio = most if flat >= most * most * bent else math.sqrt(flat / bent) if flat > bent else 1.0
-        second = si if band == 0 else sj
-        if band == 2:
-            second = sub(add(P(i + 1, j + 1), P(i - 1, j - 1)), add(P(i - 1, j + 1), P(i + 1, j - 1)))
-        return axes, (w, w * ratio, w * ratio), dot(second, axes[0]) / w
-
-    q, details = {}, {}
-    if d.bit(models.empty[v]):
-        return q, details, False
-    B = max(1, last // 8)
-    filled = read_blocks(d, models, v, B, before)
-    for band, (i0, j0) in enumerate([(1, 0), (0, 1), (1, 1)]):
-        for j in range(j0, n, 2):
-            for i in range(i0, n, 2):
-                has = [filled[e, min(i // 8, B - 1), min(j // 8, B - 1)] for e in (0, 1, 1)]
-                if not any(has):
-                    continue
-                other = mate.get((i, j))
-                if other:
-                    other_band = 1 if other[0] % 2 == 0 else 0
-                    if (other_band, other[1], other[0]) < (band, j, i):
-                        continue
-                axes, steps, bend = frame(i, j, band)
-                here, detail = [0, 0, 0], (0.0, 0.0, 0.0)
-                for c in range(3):
-                    if not has[c]:
-                        continue
-                    here[c] = read_detail(d, models, q, before, i, j, c, here, band, v, bend)
-                    if here[c]:
-                        q[c, i, j] = here[c]
-                        detail = add(detail, times(here[c] * steps[c], axes[c]))
-                if any(here):
-                    details[i, j] = detail
-                    if other:
-                        details[other] = detail
-                        for c in range(3):
-                            q[(c,) + other] = here[c]
-    return q, details, True
-
-
-def read_blocks(d, models, v, B, before):
-    filled = {}
-    for bj in range(B):
-        for bi in range(B):
-            for e in range(2):
-                def sum_of(least, most):
-                    return sum(abs(before.get((c, 4 * bi + x, 4 * bj + y), 0)) for c in ((0,), (1, 2))[e]
-                               for y in range(least, most + 1) for x in range(least, most + 1))
-
-                g = filled[0, bi, bj] if e else 0
-                o = 2 * (filled.get((e, bi - 1, bj), 0) + filled.get((e, bi, bj - 1), 0))
-                o += filled.get((e, bi - 1, bj - 1), 0) + filled.get((e, bi + 1, bj - 1), 0)
-                below = sum_of(0, 4)
-                x, y = cls(below, 13), cls(sum_of(-2, 6) - below, 13)
-                keys = [(0, e, g, v, o), (1, e, g, o, x), (2, e, g, min(x, 9), y)]
-                filled[e, bi, bj] = d.mixed([models.block[key] for key in keys], models.block_weights[e, g])
-    return filled
-
-
-def read_detail(d, models, coded, before, i, j, component, here, band, v, bend):
-    def q(x, y, c=component):
-        return coded.get((c, i + x, j + y), 0)
-
-    pi, pj = i // 4 * 2 + i % 2, j // 4 * 2 + j % 2
-
-    def p(x, y):
-        return before.get((component, pi + x, pj + y), 0)
-
-    e = 1 if component else 0
-    W, N, dia = abs(q(-2, 0)), abs(q(0, -2)), abs(q(-2, -2)) + abs(q(2, -2))
-    far = abs(q(-4, 0)) + abs(q(0, -4))
-    near = 2 * (W + N) + dia + far
-    siblings = [(), ((-1, -1), (1, -1), (-1, 1), (1, 1)), ((0, -1), (0, 1), (-1, 0), (1, 0))][band]
-    sib = sum(abs(q(*at)) for at in siblings)
-    F = [0, q(-1, -1) - q(1, -1) - q(-1, 1) + q(1, 1), sum(q(*at) for at in siblings)][band]
-    up = 2 * abs(p(0, 0)) + abs(p(-2, 0)) + abs(p(2, 0)) + abs(p(0, -2)) + abs(p(0, 2))
-    others = sum(2 * abs(here[c]) for c in range(component))
-    others += sum((abs(q(-2, 0, c)) + abs(q(0, -2, c)) + 1) // 2 for c in range(component + 1, 3))
-    a, u, s = cls(near, 17), cls(up, 9), cls(sib, 11)
-    t = cls(2 * near + 3 * others + up + 2 * sib, 23)
-    c = cls(int(4 * abs(bend)), 13) if abs(bend) < 16384 else 13
-    k = 0
-    while k < 3:
-        keys = [(0, cls(W, 7), cls(N, 7), cls(dia, 7), e, k), (1, t, component, k), (2, c, min(a, 7), e, k),
-                (3, u, s, band, e, k)]
-        if not d.mixed_twice([models.magnitude[key] for key in keys], models.weights[0, t, e, k],
-                             models.weights[1, v, band, e, k]):
-            break
-        k += 1
-    if k == 0:
-        return 0
-    magnitude = k if k < 3 else 3 + models.larger[a].read(d)
-    demand(magnitude < 1 << 30)
-    keys = [(0, band, sg(q(-2, 0)), sg(q(0, -2)), sg(q(-2, -2)), sg(q(2, -2)), e),
-            (1, band, sg(p(0, 0)), sg(F), sg(q(-2, 0)), e), (2, band, 2 * min(c, 7) + (bend < 0), e),
-            (3, band, sg(p(0, 0)), sg(q(-4, 0)), sg(q(0, -4)), e)]
-    negative = d.mixed([models.sign[key] for key in keys], models.sign_weights[band, e])
-    return -magnitude if negative else magnitude
+        return axes, (w, w * ratio, w * ratio)
 
 
 # --- section 6: fusing and diffusion
