@@ -68,6 +68,24 @@ std::string hashOf(const Bytes& bytes)
             return "refused";
         hash.add(normals);
     }
+    for (std::uint32_t k = 0; k < info.attributes; ++k) {
+        gim_attribute attribute{};
+        attribute.size = sizeof attribute;
+        if (gim_read_attribute(bytes.data(), bytes.size(), nullptr, k, &attribute) != GIM_OK)
+            return "refused";
+        const auto addAs = [&](auto zero, auto word) {
+            std::vector<decltype(zero)> samples(attribute.decoded_bytes / sizeof zero);
+            if (gim_decode_attribute(bytes.data(), bytes.size(), nullptr, k, work.data(), work.size(),
+                                     samples.data()) != GIM_OK)
+                return false;
+            hash.add(std::vector<decltype(word)>(samples.begin(), samples.end()));
+            return true;
+        };
+        if (!(attribute.type == GIM_U8    ? addAs(std::uint8_t{}, std::uint32_t{})
+              : attribute.type == GIM_U16 ? addAs(std::uint16_t{}, std::uint32_t{})
+                                          : addAs(0.0f, 0.0f)))
+            return "refused";
+    }
     gim_mesh_counts counts{sizeof counts, 0, 0, 0};
     if (gim_mesh_size(bytes.data(), bytes.size(), nullptr, 0, 0, work.data(), work.size(), &counts) != GIM_OK)
         return "refused";

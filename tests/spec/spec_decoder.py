@@ -40,7 +40,10 @@ def read_chunks(data):
             shift += 7
             if byte < 128:
                 break
-        chunks[kind] = data[at:at + length]
+        if kind == "a":
+            chunks.setdefault(kind, []).append(data[at:at + length])
+        else:
+            chunks[kind] = data[at:at + length]
         at += length
         demand(struct.unpack_from("<I", data, at)[0] == zlib.crc32(data[begin:at]))
         at += 4
@@ -260,13 +263,15 @@ def f32(x):
 
 def read_image(content, seam, fuse, diffuse):
     kind = content[0]
-    demand(kind >> 6 == 0 and 1 <= (kind & 15) <= 12, "UNSUPPORTED")
+    demand(kind >> 7 == 0 and 1 <= (kind & 15) <= 12, "UNSUPPORTED")
     n = (1 << (kind & 15)) + 1
     coding = kind >> 4
     if coding == 0:
         return n, coding, read_wavelet(n, content[1:], seam, fuse, diffuse)
     if coding == 3:
         return n, coding, read_surface(n, content[1:], seam)
+    if coding == 5:
+        return n, coding, [f32(x) for x in read_field(n, content[1:], seam, 3, True)]
     least_of = classes(seam, n)
     if coding == 1:
         least, (step,) = struct.unpack_from("<3f", content, 1), struct.unpack_from("<f", content, 13)
@@ -275,6 +280,25 @@ def read_image(content, seam, fuse, diffuse):
         return n, coding, [f32(least[k % 3] + q * step) for k, q in enumerate(integers)]
     demand(coding == 2, "UNSUPPORTED")
     return n, coding, ExactImage(n, 3, 0, least_of, Decoder(content[1:])).samples
+
+
+def read_attribute(content, seam):
+    L = content[0]
+    demand(1 <= L <= 63)
+    name, (k, flags, kind) = content[1:1 + L].decode("utf-8"), content[1 + L:4 + L]
+    demand(1 <= k <= 16)
+    demand(flags & 3 < 3 and flags >> 4 == 0 and kind >> 7 == 0, "UNSUPPORTED")
+    n, coding, rest = (1 << (kind & 15)) + 1, kind >> 4, content[4 + L:]
+    bits, glued = (8, 16, 0)[flags & 3], flags >> 2 & 1
+    demand(bits or not flags & 8)
+    if coding == 2:
+        least_of = classes(seam, n) if glued else list(range(4 * (n - 1)))
+        return bits, ExactImage(n, k, bits, least_of, Decoder(rest)).samples
+    demand(coding == 5, "UNSUPPORTED")
+    samples = read_field(n, rest, seam, k, glued)
+    if bits:
+        return bits, [int(max(0.0, min((1 << bits) - 1, x)) + 0.5) for x in samples]
+    return bits, [f32(x) for x in samples]
 
 
 def bits_of(value):
@@ -523,10 +547,10 @@ def sg(x):
     return (x > 0) - (x < 0)
 
 
-def read_coarse(d):
+def read_coarse(d, count=3, coarse_code=None):
     coarse = [[0] * 9 for _ in range(3)]
-    coarse_code = ExpGolomb(50)
-    for c in range(3):
+    coarse_code = coarse_code or ExpGolomb(50)
+    for c in range(count):
         for k in range(9):
             if k == 0:
                 b = d.raw(6)
@@ -739,7 +763,7 @@ def transform_along_seam(image, n, border):
 class SurfaceModels:
     def __init__(self):
         self.empty, self.block, self.magnitude, self.sign = Models(), Models(), Models(), Models()
-        self.larger = Models(lambda: ExpGolomb(30))
+        self.larger, self.coarse = Models(lambda: ExpGolomb(30)), ExpGolomb(50)
         self.weights = Models(lambda: [65536 * 13 // 10 // 4] * 4)
         self.block_weights = Models(lambda: [65536 * 13 // 10 // 3] * 3)
         self.sign_weights = Models(lambda: [65536 * 13 // 10 // 4] * 4)
@@ -749,8 +773,35 @@ def read_surface(n_file, content, seam):
     step, ratios, limits = struct.unpack_from("<fBB", content)
     demand(2.0 ** -100 <= step <= 2.0 ** 100)
     d = Decoder(content[6:])
-    border, models = Border(seam, n_file), SurfaceModels()
-    surface = [[[q * step for q in image[3 * j:3 * j + 3]] for j in range(3)] for image in read_coarse(d)]
+    frames = lambda *level: surface_frames(*level, step, ratios, limits)
+    surface = read_vectors(n_file, d, SurfaceModels(), Border(seam, n_file), step, 3, frames)
+    d.finish()
+    return [f32(surface[c][j][i]) for j in range(n_file) for i in range(n_file) for c in range(3)]
+
+
+def read_field(n, content, seam, channels, glued):
+    step, kind = struct.unpack_from("<fB", content)
+    demand(2.0 ** -100 <= step <= 2.0 ** 100)
+    demand(kind & 15 < 3, "UNSUPPORTED")
+    d, models, images = Decoder(content[5:]), SurfaceModels(), []
+    border = Border(seam, n) if glued else OpenBorder()
+    while len(images) < channels:
+        count = min(3, channels - len(images))
+        axes = kind & 15 if count == 3 else 0
+        frames = lambda *level: field_frames(*level, step, axes, root(2 * (kind >> 4)))
+        images += read_vectors(n, d, models, border, step, count, frames)[:count]
+    d.finish()
+    return [image[j][i] for j in range(n) for i in range(n) for image in images]
+
+
+class OpenBorder:
+    def glued(self, n):
+        return False
+
+
+def read_vectors(n_file, d, models, border, step, count, frames):
+    coarse = read_coarse(d, count, models.coarse)
+    surface = [[[q * step for q in image[3 * j:3 * j + 3]] for j in range(3)] for image in coarse]
     if border.glued(3):
         for image in surface:
             border.average(image, 3)
@@ -766,7 +817,8 @@ def read_surface(n_file, content, seam):
                     fine[2 * j][2 * i] = image[j][i] * (1.0 / A)
             transform_along_seam(fine, n, glued)
             prediction.append(fine)
-        q, details, any_coded = read_details(d, models, prediction, n, v, step, ratios, limits, glued, before)
+        frame = frames(prediction, n, v, glued.mates(n) if glued else {})
+        q, details, any_coded = read_details(d, models, n, v, glued, before, count, frame)
         if any_coded:
             for c in range(3):
                 fine = [[0.0] * n for _ in range(n)]
@@ -780,29 +832,18 @@ def read_surface(n_file, content, seam):
             for image in prediction:
                 border.average(image, n)
         surface, before, m, v = prediction, q, n, v + 1
-    d.finish()
-    return [f32(surface[c][j][i]) for j in range(n_file) for i in range(n_file) for c in range(3)]
+    return surface
 
 
 def root(k):
     return [1.0, 1.189207115002721, 1.4142135623730951, 1.6817928305074292][k % 4] * float(1 << k // 4)
 
 
-def read_details(d, models, prediction, n, v, step, ratios, limits, glued, before):
+def derivatives(prediction, n, mate):
     last = n - 1
-    mate = glued.mates(n) if glued else {}
 
     def P(i, j):
         return (prediction[0][j][i], prediction[1][j][i], prediction[2][j][i])
-
-    mean = 0.0
-    for j in range(last):
-        for i in range(last):
-            c = cross(sub(P(i + 1, j + 1), P(i, j)), sub(P(i, j + 1), P(i + 1, j)))
-            mean += math.sqrt(dot(c, c))
-    mean = mean * 0.5 / (float(last) * float(last))
-    limit, flatness = 1 + (limits & 15) / 4, root(2 * (limits >> 4))
-    most = root(min(v * (ratios & 15), 2 * (ratios >> 4)))
 
     def derivative(i, j, x, y):
         i0, j0, i1, j1 = i - x, j - y, i + x, j + y
@@ -816,6 +857,51 @@ def read_details(d, models, prediction, n, v, step, ratios, limits, glued, befor
         else:
             outer = add(P(i, j), sub(P(i, j), inner))
         return sub(inner, outer) if high else sub(outer, inner)
+
+    def second(i, j, band):
+        if band == 2:
+            return sub(add(P(i + 1, j + 1), P(i - 1, j - 1)), add(P(i - 1, j + 1), P(i + 1, j - 1)))
+        x, y = 1 - band, band
+        if not 0 < (i, j)[band] < last:
+            return (0.0, 0.0, 0.0)
+        return sub(add(P(i + x, j + y), P(i - x, j - y)), times(2.0, P(i, j)))
+
+    return P, derivative, second
+
+
+def field_frames(prediction, n, v, mate, step, kind, ratio):
+    P, derivative, second = derivatives(prediction, n, mate)
+
+    def frame(i, j, band):
+        axes, steps = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), [step] * 3
+        if kind == 1:
+            a, b, c, e = 0.5773502691896258, 0.7071067811865476, 0.4082482904638631, 0.8164965809277261
+            axes, steps = ((a, a, a), (b, 0.0, -b), (c, -e, c)), [step, step * ratio, step * ratio]
+        if kind == 2:
+            steps = [step * ratio, step, step]
+            p = P(i, j)
+            if dot(p, p) > 0:
+                radial = times(1.0 / math.sqrt(dot(p, p)), p)
+                di = derivative(i, j, 1, 0)
+                across = sub(di, times(dot(di, radial), radial))
+                if dot(across, across) > 0:
+                    along = times(1.0 / math.sqrt(dot(across, across)), across)
+                    axes = (radial, along, cross(radial, along))
+        return axes, steps, [dot(second(i, j, band), axis) / w for axis, w in zip(axes, steps)]
+
+    return frame
+
+
+def surface_frames(prediction, n, v, mate, step, ratios, limits):
+    P, derivative, second = derivatives(prediction, n, mate)
+    last, mean = n - 1, 0.0
+    for j in range(last):
+        for i in range(last):
+            c = cross(sub(P(i + 1, j + 1), P(i, j)), sub(P(i, j + 1), P(i + 1, j)))
+            mean += math.sqrt(dot(c, c))
+    mean = mean * 0.5 / (float(last) * float(last))
+    limit, flatness = 1 + (limits & 15) / 4, root(2 * (limits >> 4))
+    most = root(min(v * (ratios & 15), 2 * (ratios >> 4)))
 
     def frame(i, j, band):
         di, dj = derivative(i, j, 1, 0), derivative(i, j, 0, 1)
@@ -831,27 +917,27 @@ def read_details(d, models, prediction, n, v, step, ratios, limits, glued, befor
             r, squared = area / mean, limit * limit
             f = math.sqrt(squared if r * limit * limit < 1 else 1.0 / squared if r > squared else 1.0 / r)
         w = step * f
-        si = sj = (0.0, 0.0, 0.0)
-        if 0 < i < last:
-            si = sub(add(P(i + 1, j), P(i - 1, j)), times(2.0, P(i, j)))
-        if 0 < j < last:
-            sj = sub(add(P(i, j + 1), P(i, j - 1)), times(2.0, P(i, j)))
+        si, sj = second(i, j, 0), second(i, j, 1)
         bent, flat = dot(si, si) + dot(sj, sj), flatness * flatness * area
         ratio = most if flat >= most * most * bent else math.sqrt(flat / bent) if flat > bent else 1.0
-        second = si if band == 0 else sj
-        if band == 2:
-            second = sub(add(P(i + 1, j + 1), P(i - 1, j - 1)), add(P(i - 1, j + 1), P(i + 1, j - 1)))
-        return axes, (w, w * ratio, w * ratio), dot(second, axes[0]) / w
+        bend = dot(second(i, j, band), axes[0]) / w
+        return axes, (w, w * ratio, w * ratio), (bend, bend, bend)
 
+    return frame
+
+
+def read_details(d, models, n, v, glued, before, count, frame):
+    last = n - 1
+    mate = glued.mates(n) if glued else {}
     q, details = {}, {}
     if d.bit(models.empty[v]):
         return q, details, False
     B = max(1, last // 8)
-    filled = read_blocks(d, models, v, B, before)
+    filled = read_blocks(d, models, v, B, before, 2 if count > 1 else 1)
     for band, (i0, j0) in enumerate([(1, 0), (0, 1), (1, 1)]):
         for j in range(j0, n, 2):
             for i in range(i0, n, 2):
-                has = [filled[e, min(i // 8, B - 1), min(j // 8, B - 1)] for e in (0, 1, 1)]
+                has = [filled[e, min(i // 8, B - 1), min(j // 8, B - 1)] for e in (0, 1, 1)[:count]]
                 if not any(has):
                     continue
                 other = mate.get((i, j))
@@ -861,10 +947,10 @@ def read_details(d, models, prediction, n, v, step, ratios, limits, glued, befor
                         continue
                 axes, steps, bend = frame(i, j, band)
                 here, detail = [0, 0, 0], (0.0, 0.0, 0.0)
-                for c in range(3):
+                for c in range(count):
                     if not has[c]:
                         continue
-                    here[c] = read_detail(d, models, q, before, i, j, c, here, band, v, bend)
+                    here[c] = read_detail(d, models, q, before, i, j, c, here, band, v, bend[c])
                     if here[c]:
                         q[c, i, j] = here[c]
                         detail = add(detail, times(here[c] * steps[c], axes[c]))
@@ -877,11 +963,11 @@ def read_details(d, models, prediction, n, v, step, ratios, limits, glued, befor
     return q, details, True
 
 
-def read_blocks(d, models, v, B, before):
+def read_blocks(d, models, v, B, before, directions):
     filled = {}
     for bj in range(B):
         for bi in range(B):
-            for e in range(2):
+            for e in range(directions):
                 def sum_of(least, most):
                     return sum(abs(before.get((c, 4 * bi + x, 4 * bj + y), 0)) for c in ((0,), (1, 2))[e]
                                for y in range(least, most + 1) for x in range(least, most + 1))
@@ -1041,6 +1127,9 @@ def hash_of(path):
         if coding != 2:
             make_unit(normals)
         add(struct.pack("<%df" % len(normals), *normals))
+    for attribute in chunks.get("a", []):
+        bits, samples = read_attribute(attribute, seam)
+        add(struct.pack("<%d%s" % (len(samples), "I" if bits else "f"), *samples))
     indices = triangles(n, classes(seam, n), xyz)
     add(struct.pack("<%dI" % len(indices), *indices))
     return "%016x" % value
