@@ -67,5 +67,16 @@ inline gim_status exerciseDecoder(const std::uint8_t* bytes, std::size_t size, s
             gim_decode_normals(bytes, size, &limits, 0, work.data(), work.size(), normals.data());
         if (decoded == GIM_MISUSE) std::abort();
     }
+    for (std::uint32_t k = 0; k < info.attributes; ++k) {
+        gim_attribute attribute{};
+        attribute.size = sizeof attribute;
+        if (gim_read_attribute(bytes, size, &limits, k, &attribute) != GIM_OK) std::abort();
+        if (attribute.channels > GIM_MAX_CHANNELS || attribute.decoded_bytes > std::uint64_t{1} << 26)
+            std::abort();
+        std::vector<unsigned char> samples(attribute.decoded_bytes);
+        if (gim_decode_attribute(bytes, size, &limits, k, work.data(), work.size(), samples.data()) ==
+            GIM_MISUSE)
+            std::abort();
+    }
     return GIM_OK;
 }

@@ -46,13 +46,16 @@ Bytes validFile(gim_coding coding)
     source.xyz = xyz;
     source.normalGrid = 17;
     source.normals = normals;
+    const std::vector<float> colors(4 * 17 * 17, 100), uv(2 * 33 * 33, 0.5f);
+    source.attributes.push_back({"color", 17, 4, GIM_U8, true, true, false, colors});
+    source.attributes.push_back({"uv", 33, 2, GIM_F32, false, false, false, uv});
     return samples::encoded(source, {coding, 0.02f, 0.1f});
 }
 
 TEST(Mutations, AreDecodedOrRefusedButNeverHarmful)
 {
     std::map<gim_status, int> seen;
-    for (int coding = 0; coding < 3; ++coding) {
+    for (int coding = 0; coding < 4; ++coding) {
         const Bytes valid = validFile(static_cast<gim_coding>(coding));
         samples::Dice dice(static_cast<std::uint64_t>(coding));
         for (int round = 0; round < 1500; ++round) {

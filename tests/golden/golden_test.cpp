@@ -51,12 +51,14 @@ std::string hashOf(const Bytes& bytes)
 {
     gim_info info{};
     info.size = sizeof info;
-    if (gim_probe(bytes.data(), bytes.size(), nullptr, &info) != GIM_OK) return "refused";
+    const gim_status probe = gim_probe(bytes.data(), bytes.size(), nullptr, &info);
+    const std::uint32_t prefix = probe == GIM_MORE_INPUT && info.grid != 0 ? GIM_PREFIX : 0;
+    if (probe != GIM_OK && prefix == 0) return "refused";
     std::vector<unsigned char> work(gim_workspace_size(&info));
     std::vector<float> xyz(3 * std::size_t{info.grid} * info.grid);
     Hash hash;
     for (const std::uint32_t flags : {0u, GIM_NO_FUSE, GIM_NO_DIFFUSE}) {
-        if (gim_decode_geometry(bytes.data(), bytes.size(), nullptr, flags, work.data(), work.size(),
+        if (gim_decode_geometry(bytes.data(), bytes.size(), nullptr, flags | prefix, work.data(), work.size(),
                                 xyz.data()) != GIM_OK)
             return "refused";
         hash.add(xyz);
@@ -68,11 +70,30 @@ std::string hashOf(const Bytes& bytes)
             return "refused";
         hash.add(normals);
     }
+    for (std::uint32_t k = 0; k < info.attributes; ++k) {
+        gim_attribute attribute{};
+        attribute.size = sizeof attribute;
+        if (gim_read_attribute(bytes.data(), bytes.size(), nullptr, k, &attribute) != GIM_OK)
+            return "refused";
+        const auto addAs = [&](auto zero, auto word) {
+            std::vector<decltype(zero)> samples(attribute.decoded_bytes / sizeof zero);
+            if (gim_decode_attribute(bytes.data(), bytes.size(), nullptr, k, work.data(), work.size(),
+                                     samples.data()) != GIM_OK)
+                return false;
+            hash.add(std::vector<decltype(word)>(samples.begin(), samples.end()));
+            return true;
+        };
+        if (!(attribute.type == GIM_U8    ? addAs(std::uint8_t{}, std::uint32_t{})
+              : attribute.type == GIM_U16 ? addAs(std::uint16_t{}, std::uint32_t{})
+                                          : addAs(0.0f, 0.0f)))
+            return "refused";
+    }
     gim_mesh_counts counts{sizeof counts, 0, 0, 0};
-    if (gim_mesh_size(bytes.data(), bytes.size(), nullptr, 0, 0, work.data(), work.size(), &counts) != GIM_OK)
+    if (gim_mesh_size(bytes.data(), bytes.size(), nullptr, prefix, 0, work.data(), work.size(), &counts) !=
+        GIM_OK)
         return "refused";
     std::vector<std::uint32_t> triangles(3 * std::size_t{counts.triangles});
-    if (gim_build_mesh(bytes.data(), bytes.size(), nullptr, 0, 0, work.data(), work.size(), xyz.data(),
+    if (gim_build_mesh(bytes.data(), bytes.size(), nullptr, prefix, 0, work.data(), work.size(), xyz.data(),
                        nullptr, nullptr, triangles.data()) != GIM_OK)
         return "refused";
     hash.add(triangles);

@@ -65,12 +65,33 @@ int main(int argc, char** argv)
 
     write(folder, "v1-surface-genus3", samples::encoded(genus3, {GIM_CODING_SURFACE, 0.004f, 0}));
     write(folder, "v1-surface-coarse-step", samples::encoded(genus3, {GIM_CODING_SURFACE, 0.3f, 0}));
-    write(folder, "v1-surface-fine-step", samples::encoded(genus3, {GIM_CODING_SURFACE, 2e-6f, 0}));
+    std::vector<std::uint8_t> fine = samples::encoded(genus3, {GIM_CODING_SURFACE, 2e-6f, 0});
+    write(folder, "v1-surface-fine-step", fine);
+    fine.resize(fine.size() / 3);
+    write(folder, "v1-surface-prefix", fine);
     write(folder, "v1-surface-boundary", samples::encoded(boundary, {GIM_CODING_SURFACE, 0.02f, 0}));
     write(folder, "v1-surface-3x3-disk",
           samples::encoded(sourceOf(small, 3, samples::diskSeam(3)), {GIM_CODING_SURFACE, 0.01f, 0}));
     write(folder, "v1-surface-torus-normals",
           samples::encoded(withNormals, {GIM_CODING_SURFACE, 0.01f, 0.05f}));
+    // Normals and attributes as fields: four channels glued, two open, and integers without loss.
+    Source withFields = boundary;
+    withFields.normalGrid = 65;
+    withFields.normals = normals;
+    samples::Dice dice(7);
+    std::vector<float> colors, uv, bones;
+    for (std::uint32_t k = 0; k < 65 * 65; ++k)
+        for (unsigned c = 0; c < 4; ++c)
+            colors.push_back(static_cast<float>(40 + 2 * (k % 65) + c * (k / 65) / 4 + dice.below(4)));
+    for (std::uint32_t k = 0; k < 33 * 33; ++k)
+        for (const std::uint32_t at : {k % 33, k / 33})
+            uv.push_back(static_cast<float>(at * at) / 1024 + 0.01f * static_cast<float>(dice.unit()));
+    for (std::uint32_t k = 0; k < 17 * 17; ++k) bones.push_back(static_cast<float>(dice.below(65536)));
+    withFields.attributes = {{"color", 65, 4, GIM_U8, true, true, false, colors},
+                             {"uv", 33, 2, GIM_F32, false, false, false, uv},
+                             {"bones", 17, 1, GIM_U16, true, false, true, bones}};
+    write(folder, "v1-fields", samples::encoded(withFields, {GIM_CODING_SURFACE, 0.02f, 0.05f, 0.01f}));
+
     // Each side folded onto itself, as an octahedron unfolds: glued down to the coarsest grid.
     const Source folded = sourceOf(
         bumpy, 65,

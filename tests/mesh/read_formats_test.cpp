@@ -3,6 +3,8 @@
 #include "shapes.h"
 #include "temporary_files.h"
 
+#include <set>
+
 #include <gmock/gmock.h>
 
 #include <bit>
@@ -140,6 +142,88 @@ TEST_F(ReadFormats, PlyBinarySignedIntegerCoordinates)
     for (int v : {0, 1, 2}) append(bytes, v, false);
     EXPECT_THAT(accept("a.ply", bytes).mesh.positions,
                 ElementsAre(Vec3(-3, 9, 3), Vec3(0, 0, 0), Vec3(5, 25, -5)));
+}
+
+/// The values of an attribute at a place; empty if there is no such attribute.
+std::set<std::vector<float>> valuesAt(const AttributedSurface& surface, const std::string& name,
+                                      const Vec3& at)
+{
+    std::set<std::vector<float>> values;
+    const VertexAttribute* attribute = findAttribute(surface.attributes, name);
+    for (int v = 0; attribute != nullptr && v < surface.mesh.vertexCount(); ++v) {
+        const auto first = attribute->values.begin() + v * attribute->channels;
+        if (surface.mesh.positions[v] == at) values.insert({first, first + attribute->channels});
+    }
+    return values;
+}
+
+TEST_F(ReadFormats, PlyKeepsWhatItTellsOfVertices)
+{
+    // Two triangles of a square whose texture jumps along the diagonal, a vertex in no face, and a flipped
+    // face.
+    const Result<MeshFile> file = readMesh(write("a.ply", R"(ply
+format ascii 1.0
+element vertex 7
+property float x
+property float y
+property float z
+property float nx
+property uchar red
+property uchar green
+property uchar blue
+property float s
+property float t
+property ushort group
+element face 2
+property list uchar int vertex_indices
+end_header
+9 9 9 0 1 2 3 9 9 9
+0 0 0 0 10 20 30 0 0 1
+1 0 0 0 11 21 31 1 0 2
+1 1 0 0 12 22 32 1 1 3
+0 0 0 0 10 20 30 5 5 4
+1 1 0 0 12 22 32 6 6 5
+0 1 0 0 13 23 33 5 6 6
+3 1 2 3
+3 4 6 5
+)"));
+    ASSERT_TRUE(file.ok()) << file.error().message;
+    EXPECT_EQ(file->mesh.vertexCount(), 4);
+    EXPECT_EQ(file->report.weldedVertices, 2);
+    const AttributedSurface& told = file->attributed;
+    ASSERT_EQ(told.attributes.size(), 3u);
+    EXPECT_EQ(told.mesh.vertexCount(), 6);
+    const VertexAttribute& color = *findAttribute(told.attributes, "color");
+    EXPECT_EQ(color.type, GIM_U8);
+    EXPECT_TRUE(color.normalized);
+    using Values = std::set<std::vector<float>>;
+    EXPECT_EQ(valuesAt(told, "color", {1, 1, 0}), (Values{{12, 22, 32}}));
+    EXPECT_EQ(valuesAt(told, "color", {0, 1, 0}), (Values{{13, 23, 33}}));
+    EXPECT_EQ(valuesAt(told, "uv", {1, 1, 0}), (Values{{1, 1}, {6, 6}}));
+    EXPECT_EQ(valuesAt(told, "uv", {0, 0, 0}), (Values{{0, 0}, {5, 5}}));
+    EXPECT_EQ(valuesAt(told, "group", {1, 0, 0}), (Values{{2}}));
+    EXPECT_EQ(findAttribute(told.attributes, "group")->type, GIM_U16);
+    // Both faces look the way that repair made them look.
+    const auto normalOf = [](const Mesh& mesh, int f) {
+        const Triangle& t = mesh.faces[f];
+        return (mesh.positions[t[1]] - mesh.positions[t[0]])
+            .cross(mesh.positions[t[2]] - mesh.positions[t[0]]);
+    };
+    for (int f = 0; f < 2; ++f) EXPECT_GT(normalOf(told.mesh, f).dot(normalOf(file->mesh, f)), 0);
+}
+
+TEST_F(ReadFormats, ObjColorsCountIfEveryVertexHasOne)
+{
+    const std::string all = "v 0 0 0 1 0.5 0\nv 1 0 0 1 0.5 0.25\nv 0 1 0 0 0 1\nf 1 2 3\n";
+    const Result<MeshFile> colored = readMesh(write("c.obj", all));
+    ASSERT_TRUE(colored.ok());
+    ASSERT_EQ(colored->attributed.attributes.size(), 1u);
+    EXPECT_EQ(valuesAt(colored->attributed, "color", {1, 0, 0}),
+              (std::set<std::vector<float>>{{1, 0.5, 0.25}}));
+    const Result<MeshFile> partly =
+        readMesh(write("p.obj", "v 0 0 0 1 0.5 0\nv 1 0 0\nv 0 1 0 1\nf 1 2 3\n"));
+    ASSERT_TRUE(partly.ok());
+    EXPECT_TRUE(partly->attributed.attributes.empty());
 }
 
 TEST_F(ReadFormats, OffWithCommentsColoursAndBlankLines)

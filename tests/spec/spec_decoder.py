@@ -25,6 +25,7 @@ def demand(condition, error="CORRUPT"):
 # --- section 2: container
 
 def read_chunks(data):
+    """The chunks, and whether the file is cut short within its geometry."""
     demand(data[:4] == b"\x89GIM")
     demand(data[4] == 1, "UNSUPPORTED")
     demand(struct.unpack_from("<I", data, 6)[0] == zlib.crc32(data[:6]))
@@ -40,12 +41,19 @@ def read_chunks(data):
             shift += 7
             if byte < 128:
                 break
-        chunks[kind] = data[at:at + length]
+        if at + length > len(data):
+            demand(kind == "G" and "S" in chunks, "MORE_INPUT")
+            chunks[kind] = data[at:]
+            return chunks, True
+        if kind == "a":
+            chunks.setdefault(kind, []).append(data[at:at + length])
+        else:
+            chunks[kind] = data[at:at + length]
         at += length
         demand(struct.unpack_from("<I", data, at)[0] == zlib.crc32(data[begin:at]))
         at += 4
     demand(at == len(data))
-    return chunks
+    return chunks, False
 
 
 # --- section 3: range coder
@@ -253,13 +261,15 @@ def f32(x):
 
 def read_image(content, seam, fuse, diffuse, is_prefix=False):
     kind = content[0]
-    demand(kind >> 6 == 0 and 1 <= (kind & 15) <= 12, "UNSUPPORTED")
+    demand(kind >> 7 == 0 and 1 <= (kind & 15) <= 12, "UNSUPPORTED")
     n = (1 << (kind & 15)) + 1
     coding = kind >> 4
     if coding == 0:
         return n, coding, read_wavelet(n, content[1:], seam, fuse, diffuse)
     if coding == 3:
         return n, coding, read_surface(n, content[1:], seam, is_prefix)
+    if coding == 5:
+        return n, coding, [f32(x) for x in read_field(n, content[1:], seam, 3, True)]
     least_of = classes(seam, n)
     if coding == 1:
         least, (step,) = struct.unpack_from("<3f", content, 1), struct.unpack_from("<f", content, 13)
@@ -268,6 +278,25 @@ def read_image(content, seam, fuse, diffuse, is_prefix=False):
         return n, coding, [f32(least[k % 3] + q * step) for k, q in enumerate(integers)]
     demand(coding == 2, "UNSUPPORTED")
     return n, coding, ExactImage(n, 3, 0, least_of, Decoder(content[1:])).samples
+
+
+def read_attribute(content, seam):
+    L = content[0]
+    demand(1 <= L <= 63)
+    name, (k, flags, kind) = content[1:1 + L].decode("utf-8"), content[1 + L:4 + L]
+    demand(1 <= k <= 16)
+    demand(flags & 3 < 3 and flags >> 4 == 0 and kind >> 7 == 0, "UNSUPPORTED")
+    n, coding, rest = (1 << (kind & 15)) + 1, kind >> 4, content[4 + L:]
+    bits, glued = (8, 16, 0)[flags & 3], flags >> 2 & 1
+    demand(bits or not flags & 8)
+    if coding == 2:
+        least_of = classes(seam, n) if glued else list(range(4 * (n - 1)))
+        return bits, ExactImage(n, k, bits, least_of, Decoder(rest)).samples
+    demand(coding == 5, "UNSUPPORTED")
+    samples = read_field(n, rest, seam, k, glued)
+    if bits:
+        return bits, [int(max(0.0, min((1 << bits) - 1, x)) + 0.5) for x in samples]
+    return bits, [f32(x) for x in samples]
 
 
 def bits_of(value):
@@ -911,6 +940,26 @@ def read_surface(n_file, content, seam, is_prefix):
     return [f32(surface[c][j][i]) for j in range(n_file) for i in range(n_file) for c in range(3)]
 
 
+def read_field(n, content, seam, channels, glued):
+    step, kind = struct.unpack_from("<fB", content)
+    demand(2.0 ** -100 <= step <= 2.0 ** 100)
+    demand(kind & 15 < 3, "UNSUPPORTED")
+    d, models, images = Decoder(content[5:]), DetailModels(), []
+    border = Border(seam, n) if glued else OpenBorder()
+    while len(images) < channels:
+        count = min(3, channels - len(images))
+        coarse, levels = read_all_details(d, models, border, n, count)
+        frames = FieldFrames(step, kind & 15 if count == 3 else 0, root(2 * (kind >> 4)))
+        images += build(border, coarse, levels, n, count, frames)[:count]
+    d.finish()
+    return [image[j][i] for j in range(n) for i in range(n) for image in images]
+
+
+class OpenBorder:
+    def glued(self, n):
+        return False
+
+
 def build(border, coarse, levels, n_file, components, frames):
     surface = [[[q * frames.step for q in image[3 * j:3 * j + 3]] for j in range(3)] for image in coarse]
     if border.glued(3):
@@ -1029,6 +1078,29 @@ class SurfaceFrames(Prediction):
         return axes, (w, w * ratio, w * ratio)
 
 
+class FieldFrames(Prediction):
+    def __init__(self, step, kind, ratio):
+        self.step, self.kind, self.ratio = step, kind, ratio
+
+    def at(self, i, j):
+        step, ratio = self.step, self.ratio
+        axes, steps = ((1.0, 0.0, 0.0), (0.0, 1.0, 0.0), (0.0, 0.0, 1.0)), [step] * 3
+        if self.kind == 1:
+            a, b, c, e = 0.5773502691896258, 0.7071067811865476, 0.4082482904638631, 0.8164965809277261
+            axes, steps = ((a, a, a), (b, 0.0, -b), (c, -e, c)), [step, step * ratio, step * ratio]
+        if self.kind == 2:
+            steps = [step * ratio, step, step]
+            p = self.P(i, j)
+            if dot(p, p) > 0:
+                radial = times(1.0 / math.sqrt(dot(p, p)), p)
+                di = self.derivative(i, j, 1, 0)
+                across = sub(di, times(dot(di, radial), radial))
+                if dot(across, across) > 0:
+                    along = times(1.0 / math.sqrt(dot(across, across)), across)
+                    axes = (radial, along, cross(radial, along))
+        return axes, steps
+
+
 # --- section 6: fusing and diffusion
 
 def fuse_component(image, n, least, diffuse):
@@ -1116,7 +1188,7 @@ def triangles(n, least, xyz):
 
 def hash_of(path):
     with open(path, "rb") as file:
-        chunks = read_chunks(file.read())
+        chunks, is_prefix = read_chunks(file.read())
     seam = read_seam(chunks["S"])
     value = 14695981039346656037
 
@@ -1126,13 +1198,16 @@ def hash_of(path):
             value = (value ^ byte) * 1099511628211 & 0xFFFFFFFFFFFFFFFF
 
     for fuse, diffuse in ((True, True), (False, False), (True, False)):
-        n, _, xyz = read_image(chunks["G"], seam, fuse, diffuse)
+        n, _, xyz = read_image(chunks["G"], seam, fuse, diffuse, is_prefix)
         add(struct.pack("<%df" % len(xyz), *xyz))
     if "n" in chunks:
         _, coding, normals = read_image(chunks["n"], seam, True, True)
         if coding != 2:
             make_unit(normals)
         add(struct.pack("<%df" % len(normals), *normals))
+    for attribute in chunks.get("a", []):
+        bits, samples = read_attribute(attribute, seam)
+        add(struct.pack("<%d%s" % (len(samples), "I" if bits else "f"), *samples))
     indices = triangles(n, classes(seam, n), xyz)
     add(struct.pack("<%dI" % len(indices), *indices))
     return "%016x" % value
