@@ -39,6 +39,39 @@ TEST_F(WriteMesh, DoublesSurviveARoundTripInIndexedFormats)
             }
 }
 
+TEST_F(WriteMesh, AttributesSurviveARoundTripInPly)
+{
+    const Mesh mesh = test::tetrahedron();
+    const std::vector<VertexAttribute> attributes = {
+        {"color", 4, GIM_U16, true, {1, 2, 3, 4, 5, 6, 7, 8, 9, 10, 11, 65535, 13, 14, 15, 16}},
+        {"uv", 2, GIM_F32, false, {0, 0.5, 1, 0.25, 2, 0.125, 3, 0}},
+        {"group", 1, GIM_U8, false, {0, 1, 2, 255}}};
+    for (const Encoding encoding : kEncodings) {
+        ASSERT_TRUE(writeMesh(mesh, path("a.ply"), {}, encoding, attributes).ok());
+        const Result<MeshFile> back = readMesh(path("a.ply"));
+        ASSERT_TRUE(back.ok()) << back.error().message;
+        ASSERT_EQ(back->attributed.attributes.size(), attributes.size());
+        for (size_t k = 0; k < attributes.size(); ++k) {
+            const VertexAttribute& found = back->attributed.attributes[k];
+            EXPECT_EQ(found.name, attributes[k].name);
+            EXPECT_EQ(found.type, attributes[k].type);
+            EXPECT_EQ(found.normalized, attributes[k].normalized);
+            // Vertices come in the order of the faces.
+            for (int v = 0; v < mesh.vertexCount(); ++v) {
+                const auto at = std::find(mesh.positions.begin(), mesh.positions.end(),
+                                          back->attributed.mesh.positions[v]);
+                const auto from = (at - mesh.positions.begin()) * found.channels;
+                for (int c = 0; c < found.channels; ++c)
+                    EXPECT_EQ(found.values[v * found.channels + c], attributes[k].values[from + c]);
+            }
+        }
+    }
+    std::vector<VertexAttribute> wrong = attributes;
+    wrong[1].values.pop_back();
+    EXPECT_EQ(writeMesh(mesh, path("a.ply"), {}, Encoding::Binary, wrong).error().kind,
+              ErrorKind::BadArgument);
+}
+
 TEST_F(WriteMesh, PlyIsFloatWhereThatIsExact)
 {
     Mesh mesh = test::tetrahedron();

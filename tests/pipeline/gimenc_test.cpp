@@ -71,6 +71,58 @@ TEST_F(Gimenc, ReportHasTheDocumentedKeys)
     EXPECT_TRUE(json.at("warnings").is_array());
 }
 
+TEST_F(Gimenc, AttributesGoIntoTheFileAndBackIntoMeshes)
+{
+    const Mesh torus = shapes::torus(2, 1, 40, 20);
+    VertexAttribute color{"color", 3, GIM_U8, true, {}}, height{"height", 1, GIM_F32, false, {}};
+    for (const Vec3& p : torus.positions) {
+        for (const double c : {p.x(), p.y(), p.z()})
+            color.values.push_back(static_cast<float>(std::floor(127.5 + 40 * c)));
+        height.values.push_back(static_cast<float>(p.z()));
+    }
+    const std::vector<VertexAttribute> attributes = {color, height};
+    ASSERT_TRUE(writeMesh(torus, path("torus.ply"), {}, Encoding::Binary, attributes).ok());
+    const Ended ended =
+        gimenc("--bytes 5000 --grid 65 --attribute color --attribute height:33:lossless --json -" +
+               file("torus.ply") + file("torus.gim"));
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    const auto bytes = nlohmann::json::parse(ended.out).at("bytes");
+    EXPECT_GT(bytes.at("attributes").get<int>(), 500);
+    int sum = 0;
+    for (const char* part : {"container", "sideband", "geometry", "normals", "attributes"})
+        sum += bytes.at(part).get<int>();
+    EXPECT_EQ(bytes.at("total").get<int>(), sum);
+
+    for (const char* name : {"back.ply", "back.obj"}) {
+        const Ended decoded = run(GIMDEC_PATH, file("torus.gim") + file(name));
+        ASSERT_EQ(decoded.code, 0) << decoded.err;
+        const bool isPly = std::string(name) == "back.ply";
+        EXPECT_EQ(decoded.err.find("attribute height") == std::string::npos, isPly) << decoded.err;
+        const Result<MeshFile> back = readMesh(path(name));
+        ASSERT_TRUE(back.ok()) << back.error().message;
+        const AttributedSurface& told = back->attributed;
+        const VertexAttribute* found = findAttribute(told.attributes, "color");
+        ASSERT_NE(found, nullptr);
+        EXPECT_EQ(found->type, isPly ? GIM_U8 : GIM_F32);
+        EXPECT_EQ(findAttribute(told.attributes, "height") != nullptr, isPly);
+        const double scale = isPly ? 1 : 255;
+        double sumOff = 0;
+        for (int v = 0; v < told.mesh.vertexCount(); ++v)
+            for (int c = 0; c < 3; ++c)
+                sumOff += std::abs(scale * double{found->values[3 * v + c]} -
+                                   (127.5 + 40 * told.mesh.positions[v][c]));
+        EXPECT_LT(sumOff / (3 * told.mesh.vertexCount()), 2.5);
+    }
+    const Ended unknown = gimenc("--bytes 5000 --attribute colour" + file("torus.ply") + file("x.gim"));
+    EXPECT_EQ(unknown.code, 2);
+    EXPECT_THAT(unknown.err, HasSubstr("no attribute colour; the mesh has: color, height"));
+    EXPECT_EQ(gimenc("--bytes 5000 --attribute color:x" + file("torus.ply") + file("x.gim")).code, 2);
+    EXPECT_EQ(gimenc("--bytes 5000 --coding wavelet --grid 65 --normals 33 --attribute color" +
+                     file("torus.ply") + file("x.gim"))
+                  .code,
+              0);
+}
+
 TEST_F(Gimenc, ParamChoosesTheMapAndTheReportNamesIt)
 {
     const std::string torus = mesh("torus.ply", shapes::torus(2, 1, 24, 12));
