@@ -19,7 +19,8 @@ inline gim_status exerciseDecoder(const std::uint8_t* bytes, std::size_t size, s
     gim_chunk chunk{};
     chunk.size = sizeof chunk;
     for (std::uint32_t k = 0; k < 4; ++k) (void)gim_read_chunk(bytes, size, k, &chunk);
-    if (probe != GIM_OK) return probe;
+    const std::uint32_t prefix = probe == GIM_MORE_INPUT && info.grid != 0 ? GIM_PREFIX : 0;
+    if (probe != GIM_OK && prefix == 0) return probe;
 
     // Exactly the promised sizes, so that a sanitizer sees any step beyond.
     std::vector<unsigned char> work(gim_workspace_size(&info));
@@ -38,14 +39,14 @@ inline gim_status exerciseDecoder(const std::uint8_t* bytes, std::size_t size, s
     }
     for (std::uint32_t flags = 0; flags < 3; ++flags) {
         const gim_status decoded =
-            gim_decode_geometry(bytes, size, &limits, flags, work.data(), work.size(), xyz.data());
+            gim_decode_geometry(bytes, size, &limits, flags | prefix, work.data(), work.size(), xyz.data());
         if (decoded == GIM_MISUSE) std::abort();
         if (decoded != GIM_OK) return decoded;
         for (const float value : xyz)
             if (!(value - value == 0)) std::abort();
     }
     for (std::uint32_t level = 0; level < info.levels; ++level) {
-        for (const std::uint32_t flags : {0u, GIM_NO_FUSE}) {
+        for (const std::uint32_t flags : {prefix, prefix | GIM_NO_FUSE}) {
             gim_mesh_counts counts{sizeof counts, 0, 0, 0};
             if (gim_mesh_size(bytes, size, &limits, flags, level, work.data(), work.size(), &counts) !=
                 GIM_OK)
@@ -64,7 +65,7 @@ inline gim_status exerciseDecoder(const std::uint8_t* bytes, std::size_t size, s
     if (info.normal_grid != 0) {
         std::vector<float> normals(3 * std::size_t{info.normal_grid} * info.normal_grid);
         const gim_status decoded =
-            gim_decode_normals(bytes, size, &limits, 0, work.data(), work.size(), normals.data());
+            gim_decode_normals(bytes, size, &limits, prefix, work.data(), work.size(), normals.data());
         if (decoded == GIM_MISUSE) std::abort();
     }
     for (std::uint32_t k = 0; k < info.attributes; ++k) {

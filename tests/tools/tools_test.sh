@@ -31,6 +31,18 @@ for picture in image normals; do
 done
 "$gimdec" --image "$work/image.exr" "$torus" "$work/mesh.ply" && [ -s "$work/image.exr" ] || failures=$((failures + 1))
 
+# The first third of a file gives the whole surface, coarser, and a warning.
+fine=$tests/golden/v1-surface-fine-step.gim
+dd if="$fine" of="$work/prefix.gim" bs=1 count=5000 2>/dev/null
+"$gimdec" --json "$work/report.json" "$work/prefix.gim" "$work/prefix.obj" 2>"$work/warning" || failures=$((failures + 1))
+"$gimdec" "$fine" "$work/fine.obj" || failures=$((failures + 1))
+expect "prefix faces" "$(grep -c '^f ' "$work/fine.obj")" "$(grep -c '^f ' "$work/prefix.obj")"
+expect "prefix vertices" "$(grep -c '^v ' "$work/fine.obj")" "$(grep -c '^v ' "$work/prefix.obj")"
+expect "prefix report" '  "cut_short": true,' "$(grep '"cut_short"' "$work/report.json")"
+expect "prefix warning" 1 "$(grep -c 'is cut short: [0-9]* of [0-9]* bytes of the surface are missing' "$work/warning")"
+refused 1 "$gimdec" --whole "$work/prefix.gim" "$work/prefix.ply"
+refused 1 "$giminfo" "$work/prefix.gim"
+
 # Exit codes, with one line on standard error each.
 for file in "$tests"/malformed/*.gim; do
     case $file in
