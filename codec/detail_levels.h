@@ -17,7 +17,7 @@ inline std::size_t codedIndex(std::uint32_t grid, std::uint32_t i, std::uint32_t
 }
 
 /// A detail's magnitude has at most so many bits.
-constexpr unsigned kDetailBits = 24;
+constexpr unsigned kDetailBits = 30;
 
 /// The quantised details of one level, as far as they are known.
 struct DetailLevel

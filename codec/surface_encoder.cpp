@@ -446,7 +446,7 @@ float smallestStep(const TransformedSurface& surface)
     double detail = 0;
     for (const TransformedSurface::Level& level : surface.levels)
         for (const double value : level.largest) detail = std::max(detail, value);
-    return smallestStep(8.0 * (kMaxDetail >> kDetailBits) * detail, surface.largest);
+    return smallestStep(8 * detail, surface.largest);
 }
 
 } // namespace gimg::codec

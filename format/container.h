@@ -27,8 +27,8 @@ struct Chunk
 {
     std::uint8_t type = 0;
     ByteSpan content;
-    std::size_t offset = 0; ///< of the content in the file
-    std::size_t total = 0;  ///< bytes with header and checksum
+    std::size_t offset = 0;  ///< of the content in the file
+    std::size_t total = 0;   ///< bytes with header and checksum
     std::size_t missing = 0; ///< bytes of the content that the file ends before
 };
 
@@ -41,7 +41,8 @@ public:
     /// Reads the file's header; must come first.
     ReadStatus open();
     /// The next chunk. Call it count() times.
-    /// MoreInput: the file ends within it; if that is in its content or checksum, the chunk holds what is there.
+    /// MoreInput: the file ends within it; if that is in its content or checksum, the chunk holds what is
+    /// there.
     ReadStatus next(Chunk* chunk);
     /// After the last chunk: nothing may follow it.
     ReadStatus close() const { return in_.remaining() == 0 ? ReadStatus::Ok : ReadStatus::Corrupt; }
@@ -61,12 +62,13 @@ struct Contents
     Chunk seam, geometry, normals; ///< type 0: absent
     Chunk attributes[kMaxAttributes];
     std::uint32_t attributeCount = 0;
-    std::uint64_t otherBytes = 0;  ///< contents of skipped chunks
-    bool isPrefix = false;         ///< the file is cut short
+    std::uint64_t otherBytes = 0; ///< contents of skipped chunks
+    bool isPrefix = false;        ///< the file is cut short
 };
 
 /// Walks the whole file: checks every checksum, finds the known chunks, refuses unknown critical ones.
-/// @param allowPrefix  a file that ends within its geometry chunk, or after it, will do if the seam comes before
+/// @param allowPrefix  a file that ends within its geometry chunk, or after it, will do if the seam comes
+/// before
 ReadStatus readContents(ByteSpan file, bool allowPrefix, Contents* contents);
 
 std::uint32_t crc(ByteSpan bytes);

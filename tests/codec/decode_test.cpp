@@ -472,7 +472,7 @@ protected:
 TEST_F(Misuse, IsToldFromDamage)
 {
     EXPECT_EQ(decode(0, work.size(), out.data()), GIM_OK);
-    EXPECT_EQ(decode(4, work.size(), out.data()), GIM_MISUSE);
+    EXPECT_EQ(decode(8, work.size(), out.data()), GIM_MISUSE);
     EXPECT_EQ(decode(0, work.size() - 1, out.data()), GIM_MISUSE);
     EXPECT_EQ(decode(0, work.size(), nullptr), GIM_MISUSE);
     EXPECT_EQ(

@@ -192,8 +192,8 @@ TEST(SurfaceFrame, TangentialStepsFollowFlatnessUpToTheLevelsLimit)
     EXPECT_EQ(ratio(0.5, 8), 1);
 }
 
-// What a bump takes grows little with the plane around it: 64 times the samples, mostly in empty blocks. (Levels
-// above, and the ends of the plane, take something.)
+// What a bump takes grows little with the plane around it: 64 times the samples, mostly in empty blocks.
+// (Levels above, and the ends of the plane, take something.)
 TEST(SurfaceCoding, EmptyBlocksTakeAlmostNothing)
 {
     const auto bytes = [](std::uint32_t grid) {

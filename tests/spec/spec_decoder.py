@@ -799,7 +799,7 @@ class Level:
 def read_all_details(d, models, border, n_file, components):
     """The coarse image, and the levels."""
     passes = d.raw(5)
-    demand(passes <= 24)
+    demand(passes <= 30)
     coarse = read_coarse(d, models.coarse, components)
     levels, m = [], 3
     while m < n_file:
