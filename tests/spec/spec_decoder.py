@@ -1197,8 +1197,10 @@ def hash_of(path):
         for byte in data:
             value = (value ^ byte) * 1099511628211 & 0xFFFFFFFFFFFFFFFF
 
+    n, coding, xyz = read_image(chunks["G"], seam, True, True, is_prefix)
     for fuse, diffuse in ((True, True), (False, False), (True, False)):
-        n, _, xyz = read_image(chunks["G"], seam, fuse, diffuse, is_prefix)
+        if coding == 0:
+            n, _, xyz = read_image(chunks["G"], seam, fuse, diffuse)
         add(struct.pack("<%df" % len(xyz), *xyz))
     if "n" in chunks:
         _, coding, normals = read_image(chunks["n"], seam, True, True)
