@@ -43,17 +43,16 @@ struct StretchTable
 };
 inline constexpr StretchTable kStretch{};
 
-/// Weights of `Count` estimates, in units of 2^-12. Those that are left over of the lanes stay 0.
+/// Weights of `Count` estimates, in units of 2^-12.
 template <unsigned Count> struct MixWeights
 {
-    static constexpr unsigned kLanes = 8;
-    static_assert(Count <= kLanes);
+    static_assert(Count <= 8);
     static constexpr int kUnitBits = 12;
     /// Weights stay within 8 of 0, whatever is coded.
     static constexpr std::int16_t kMost = 32600;
     static constexpr std::int16_t kStart = static_cast<std::int16_t>((1 << kUnitBits) * 13 / 10 / Count);
 
-    alignas(16) std::int16_t weight[kLanes];
+    std::int16_t weight[Count];
 
     constexpr MixWeights() : weight()
     {
@@ -61,19 +60,19 @@ template <unsigned Count> struct MixWeights
     }
 
     /// At most 2^29.
-    int times(const std::int16_t (&stretched)[kLanes]) const
+    int times(const std::int16_t (&stretched)[Count]) const
     {
         int sum = 0;
-        for (unsigned k = 0; k < kLanes; ++k) sum += static_cast<int>(weight[k]) * stretched[k];
+        for (unsigned k = 0; k < Count; ++k) sum += static_cast<int>(weight[k]) * stretched[k];
         return sum;
     }
 
-    /// Moves each weight by stretched * error / 2^19, rounded; 16-bit lanes throughout.
+    /// Moves each weight by stretched * error / 2^19, rounded.
     /// @param error  in 2^-15
-    void learn(const std::int16_t (&stretched)[kLanes], int error)
+    void learn(const std::int16_t (&stretched)[Count], int error)
     {
         const auto part = static_cast<std::int16_t>(error >> 3);
-        for (unsigned k = 0; k < kLanes; ++k) {
+        for (unsigned k = 0; k < Count; ++k) {
             const auto twice = static_cast<std::int16_t>(2 * stretched[k]);
             const auto moves = static_cast<std::int16_t>((twice * part) >> 16);
             const auto moved = static_cast<std::int16_t>(weight[k] + ((moves + 1) >> 1));
@@ -85,7 +84,7 @@ template <unsigned Count> struct MixWeights
 
 template <unsigned Count> struct Stretched
 {
-    alignas(16) std::int16_t value[MixWeights<Count>::kLanes] = {};
+    std::int16_t value[Count] = {};
 
     explicit Stretched(BitModel* const (&models)[Count])
     {
