@@ -97,10 +97,12 @@ struct SurfaceMemory
     std::uint32_t* mates;
     DetailModels* models;
 
-    template <class Take> void layOut(std::uint32_t grid, Take&& take)
+    /// @param take    take(pointer, count) sets a pointer to so many elements
+    /// @param zeroed  the same, of zeros
+    template <class Take, class Zeroed> void layOut(std::uint32_t grid, Take&& take, Zeroed&& zeroed)
     {
         work.layOut(grid, take);
-        levels.layOut(grid, take);
+        levels.layOut(grid, zeroed);
         take(mates, borderSize(grid));
         take(models, 1);
     }
@@ -109,22 +111,24 @@ struct SurfaceMemory
     {
         std::uint64_t sum = 0;
         SurfaceMemory memory;
-        memory.layOut(grid, [&](auto*& piece, std::size_t count) {
+        const auto add = [&](auto*& piece, std::size_t count) {
             piece = nullptr;
             sum += Arena::sizeOf<std::remove_reference_t<decltype(*piece)>>(count);
-        });
+        };
+        memory.layOut(grid, add, add);
         return sum;
     }
 
     bool take(Arena& arena, std::uint32_t grid)
     {
         bool all = true;
-        layOut(grid, [&](auto*& piece, std::size_t count) {
+        const auto take = [&](auto*& piece, std::size_t count) {
             piece = arena.take<std::remove_reference_t<decltype(*piece)>>(count);
-            if (piece == nullptr)
-                all = false;
-            else
-                std::memset(static_cast<void*>(piece), 0, count * sizeof *piece);
+            if (piece == nullptr) all = false;
+        };
+        layOut(grid, take, [&](auto*& piece, std::size_t count) {
+            take(piece, count);
+            if (piece != nullptr) std::memset(static_cast<void*>(piece), 0, count * sizeof *piece);
         });
         return all;
     }

@@ -37,16 +37,6 @@ struct DetailModels
     MixWeights<kSignModels> signWeights[3][kDirections];
 };
 
-/// What is known around a place of one component of a level, and in the levels beside it.
-struct DetailPlace
-{
-    const std::uint8_t* known[kComponents];
-    const std::uint8_t* parent;   ///< nullptr at the coarsest level
-    const std::uint8_t* children; ///< the first of four; nullptr at the finest
-    std::ptrdiff_t row, parentRow, childRow;
-    unsigned orientation, level;
-};
-
 /// A sign as 0, 1 or 2.
 inline unsigned third(std::int64_t value) { return static_cast<unsigned>(signOf(value) + 1); }
 
@@ -59,44 +49,15 @@ struct Surroundings
     unsigned all() const { return 2 * (near() + others) + parents + siblings + below + farther / 2; }
 };
 
-inline Surroundings surroundingsOf(const DetailPlace& place, unsigned component)
-{
-    const std::uint8_t* q = place.known[component];
-    const std::ptrdiff_t row = place.row, two = 2 * row;
-    Surroundings s;
-    s.across = unsigned{q[-2]} + q[2];
-    s.along = unsigned{q[-two]} + q[two];
-    s.diagonals = unsigned{q[-two - 2]} + q[-two + 2] + q[two - 2] + q[two + 2];
-    s.farther = unsigned{q[-4]} + q[4] + q[-2 * two] + q[2 * two];
-    // Of the other bands.
-    s.siblings =
-        place.orientation == Diagonal ? 0u : unsigned{q[-row - 1]} + q[-row + 1] + q[row - 1] + q[row + 1];
-    if (place.orientation != Vertical) s.siblings += unsigned{q[-row]} + q[row];
-    if (place.orientation != Horizontal) s.siblings += unsigned{q[-1]} + q[1];
-    s.parents = 0;
-    if (const std::uint8_t* p = place.parent; p != nullptr) {
-        const std::ptrdiff_t up = 2 * place.parentRow;
-        s.parents = 2u * p[0] + p[-2] + p[2] + p[-up] + p[up];
-    }
-    s.below = 0;
-    if (const std::uint8_t* p = place.children; p != nullptr) {
-        const std::ptrdiff_t down = 2 * place.childRow;
-        s.below = 2 * (unsigned{p[0]} + p[2] + p[down] + p[down + 2]);
-    }
-    s.others = 0;
-    for (unsigned c = 0; c < kComponents; ++c)
-        if (c != component) s.others += 2u * *place.known[c];
-    return s;
-}
-
 /// Whether a detail that was 0 down to the bit before is not any more.
-template <class Coder>
-bool codeGrowth(Coder& coder, DetailModels& models, const DetailPlace& place, const Surroundings& s,
+template <unsigned Orientation, class Coder>
+bool codeGrowth(Coder& coder, DetailModels& models, unsigned level, const Surroundings& s,
                 unsigned component, bool grows)
 {
-    const unsigned d = component == 0 ? 0 : 1, o = place.orientation;
+    constexpr unsigned o = Orientation;
+    const unsigned d = component == 0 ? 0 : 1;
     const unsigned sum = s.all();
-    if (sum == 0) return coder.bit(models.lonely[place.level][o][d], grows);
+    if (sum == 0) return coder.bit(models.lonely[level][o][d], grows);
     const unsigned all = quickClass<23>(sum), near = quickClass<7>(s.near());
     BitModel* const mixed[kGrowthModels] = {
         &models.near[quickClass<7>(s.across)][quickClass<7>(s.along)][quickClass<7>(s.diagonals)][d],
@@ -119,12 +80,13 @@ bool codeNext(Coder& coder, DetailModels& models, const Surroundings& s, unsigne
 /// The sign of a detail that has just grown.
 /// @param q       its place
 /// @param parent  its parent's, nullptr at the coarsest level
-template <class Coder>
-bool codeDetailSign(Coder& coder, DetailModels& models, const DetailPlace& place, const std::int32_t* q,
+template <unsigned Orientation, class Coder>
+bool codeDetailSign(Coder& coder, DetailModels& models, std::ptrdiff_t row, const std::int32_t* q,
                     const std::int32_t* parent, unsigned component, bool negative)
 {
-    const unsigned d = component == 0 ? 0 : 1, o = place.orientation;
-    const std::ptrdiff_t row = place.row, two = 2 * row;
+    constexpr unsigned o = Orientation;
+    const unsigned d = component == 0 ? 0 : 1;
+    const std::ptrdiff_t two = 2 * row;
     const auto sum = [q](std::ptrdiff_t a, std::ptrdiff_t b) { return third(std::int64_t{q[a]} + q[b]); };
     const std::int64_t siblings = o == Diagonal
                                       ? std::int64_t{q[-row]} + q[row] + q[-1] + q[1]

@@ -51,6 +51,157 @@ bool codeBlocks(Coder& coder, DetailModels& models, DetailLevels& levels, unsign
     return true;
 }
 
+/// Codes one more bit of the details of a band of a level. What does not change within a band is known when this is
+/// compiled, or kept by value: stores of magnitudes, which are bytes, may alias all that is behind a pointer.
+template <unsigned Orientation, bool HasChildren, class Coder, class Whole> class BandPass
+{
+public:
+    BandPass(Coder& coder, DetailModels& models, DetailLevels& levels, const GluedBorder* glued,
+             unsigned components, unsigned l, unsigned pass, const Whole& whole)
+        : coder_(coder), models_(models), level_(levels.level[l]), glued_(glued), whole_(whole), l_(l), pass_(pass),
+          components_(components), n_(level_.size), side_(BlockMap::side(n_)),
+          row_(static_cast<std::ptrdiff_t>(codedPitch(n_))),
+          parentRow_(static_cast<std::ptrdiff_t>(codedPitch(n_ / 2 + 1))),
+          childRow_(static_cast<std::ptrdiff_t>(codedPitch(2 * n_ - 1)))
+    {
+        for (unsigned c = 0; c < kComponents; ++c) {
+            known_[c] = level_.known[c];
+            q_[c] = level_.q[c];
+            parent_[c] = l > 0 ? levels.level[l - 1].known[c] : nullptr;
+            parentQ_[c] = l > 0 ? levels.level[l - 1].q[c] : nullptr;
+            children_[c] = HasChildren ? levels.level[l + 1].known[c] : nullptr;
+        }
+    }
+
+    /// @return false: the bytes have ended
+    bool run()
+    {
+        const std::uint32_t last = n_ - 1;
+        for (std::uint32_t j = firstRow(Orientation); j < n_; j += 2) {
+            const std::uint32_t bj = BlockMap::blockOf(j, side_);
+            const bool onBorder = glued_ != nullptr && (j == 0 || j == last);
+            for (std::uint32_t bi = 0; bi < side_; ++bi) {
+                const unsigned filled = level_.blocks.flags(bi, bj);
+                if (filled == 0) continue;
+                std::uint32_t i = bi * BlockMap::kBlock + firstColumn(Orientation);
+                std::uint32_t end = bi + 1 == side_ ? n_ : (bi + 1) * BlockMap::kBlock;
+                if (glued_ != nullptr && Orientation == Vertical) {
+                    if (bi == 0) {
+                        if (!codeOnBorder(i, j, filled)) return false;
+                        i += 2;
+                    }
+                    if (bi + 1 == side_) --end;
+                }
+                for (; i < end; i += 2)
+                    if (!(onBorder ? codeOnBorder(i, j, filled) : codePlace(i, j, filled))) return false;
+                if (glued_ != nullptr && Orientation == Vertical && bi + 1 == side_)
+                    if (!codeOnBorder(last, j, filled)) return false;
+            }
+        }
+        return true;
+    }
+
+private:
+    bool codeOnBorder(std::uint32_t i, std::uint32_t j, unsigned filled)
+    {
+        const SharedDetail shared = sharedDetail(glued_, n_, Orientation, i, j);
+        if (!shared.isFirst) return true;
+        const bool goesOn = codePlace(i, j, filled);
+        if (shared.mate == GluedBorder::kNoMate) return goesOn;
+        const GridPoint other = borderPoint(n_, shared.mate);
+        const std::size_t index = codedIndex(n_, i, j), copy = codedIndex(n_, other.i, other.j);
+        for (unsigned c = 0; c < components_; ++c) {
+            q_[c][copy] = q_[c][index];
+            known_[c][copy] = known_[c][index];
+        }
+        return goesOn;
+    }
+
+    bool codePlace(std::uint32_t i, std::uint32_t j, unsigned filled)
+    {
+        const std::size_t index = codedIndex(n_, i, j);
+        const std::size_t parent =
+            (j / 4 * 2 + j % 2 + kCodedMargin) * static_cast<std::size_t>(parentRow_) + i / 4 * 2 + i % 2 + kCodedMargin;
+        const std::size_t children =
+            (j / 2 * 4 + j % 2 + kCodedMargin) * static_cast<std::size_t>(childRow_) + i / 2 * 4 + i % 2 + kCodedMargin;
+        for (unsigned c = 0; c < components_; ++c) {
+            if ((filled >> (c == 0 ? 0 : 1) & 1u) == 0) continue;
+            const Surroundings around = surroundings(c, index, parent, children);
+            const std::int32_t exact = whole_(l_, c, index);
+            const auto size = static_cast<std::uint32_t>(magnitudeOf(exact) >> pass_);
+            const std::int32_t q = q_[c][index];
+            const std::uint8_t known = known_[c][index];
+            std::int32_t more = 0;
+            if (q != 0) {
+                const bool bit = codeNext(coder_, models_, around, known, (size & 1u) != 0);
+                if (bit) more = q < 0 ? -(1 << pass_) : 1 << pass_;
+            } else if (codeGrowth<Orientation>(coder_, models_, l_, around, c, size != 0)) {
+                const bool negative =
+                    codeDetailSign<Orientation>(coder_, models_, row_, q_[c] + index,
+                                   l_ == 0 ? nullptr : parentQ_[c] + parent, c, exact < 0);
+                more = negative ? -(1 << pass_) : 1 << pass_;
+            }
+            if (coder_.hasEnded()) return false;
+            if (more == 0) continue;
+            q_[c][index] = q + more;
+            known_[c][index] = known < 255 ? static_cast<std::uint8_t>(known + 1) : known;
+        }
+        return true;
+    }
+
+    Surroundings surroundings(unsigned component, std::size_t index, std::size_t parent, std::size_t children) const
+    {
+        const std::ptrdiff_t row = row_, two = 2 * row;
+        const std::uint8_t* q = known_[component] + index;
+        Surroundings s;
+        s.across = unsigned{q[-2]} + q[2];
+        s.along = unsigned{q[-two]} + q[two];
+        s.diagonals = unsigned{q[-two - 2]} + q[-two + 2] + q[two - 2] + q[two + 2];
+        s.farther = unsigned{q[-4]} + q[4] + q[-2 * two] + q[2 * two];
+        // Of the other bands.
+        s.siblings = Orientation == Diagonal ? 0u : unsigned{q[-row - 1]} + q[-row + 1] + q[row - 1] + q[row + 1];
+        if (Orientation != Vertical) s.siblings += unsigned{q[-row]} + q[row];
+        if (Orientation != Horizontal) s.siblings += unsigned{q[-1]} + q[1];
+        s.parents = 0;
+        if (l_ > 0) {
+            const std::uint8_t* p = parent_[component] + parent;
+            const std::ptrdiff_t up = 2 * parentRow_;
+            s.parents = 2u * p[0] + p[-2] + p[2] + p[-up] + p[up];
+        }
+        s.below = 0;
+        if (HasChildren) {
+            const std::uint8_t* p = children_[component] + children;
+            const std::ptrdiff_t down = 2 * childRow_;
+            s.below = 2 * (unsigned{p[0]} + p[2] + p[down] + p[down + 2]);
+        }
+        const unsigned here = unsigned{known_[0][index]} + known_[1][index] + known_[2][index];
+        s.others = 2 * (here - q[0]);
+        return s;
+    }
+
+    Coder& coder_;
+    DetailModels& models_;
+    DetailLevel& level_;
+    const GluedBorder* glued_;
+    const Whole& whole_;
+    const unsigned l_, pass_, components_;
+    const std::uint32_t n_, side_;
+    const std::ptrdiff_t row_, parentRow_, childRow_;
+    std::uint8_t* known_[kComponents];
+    std::int32_t* q_[kComponents];
+    const std::uint8_t *parent_[kComponents], *children_[kComponents];
+    const std::int32_t* parentQ_[kComponents];
+};
+
+template <bool HasChildren, class Coder, class Whole>
+bool codeBands(Coder& coder, DetailModels& models, DetailLevels& levels, const GluedBorder* glued,
+               unsigned components, unsigned l, unsigned pass, const Whole& whole)
+{
+    return BandPass<Horizontal, HasChildren, Coder, Whole>(coder, models, levels, glued, components, l, pass, whole).run() &&
+           BandPass<Vertical, HasChildren, Coder, Whole>(coder, models, levels, glued, components, l, pass, whole).run() &&
+           BandPass<Diagonal, HasChildren, Coder, Whole>(coder, models, levels, glued, components, l, pass, whole).run();
+}
+
 /// Codes one more bit of all details.
 ///
 /// In pass k a detail is known down to bit k if its turn has come, else down to bit k + 1. Coarse levels come
@@ -79,61 +230,11 @@ bool codePass(Coder& coder, DetailModels& models, DetailLevels& levels, const Gl
             level.isFilled = true;
         }
         if (!codeBlocks(coder, models, levels, components, l, pass, whole)) return false;
-
-        const DetailLevel* coarser = l > 0 ? &levels.level[l - 1] : nullptr;
-        const DetailLevel* finer =
-            l + 1 < levels.count && levels.level[l + 1].isFilled ? &levels.level[l + 1] : nullptr;
-        DetailPlace place;
-        place.row = static_cast<std::ptrdiff_t>(codedPitch(n));
-        place.parentRow = static_cast<std::ptrdiff_t>(codedPitch(m));
-        place.childRow = static_cast<std::ptrdiff_t>(codedPitch(2 * n - 1));
-        place.level = l;
+        const bool hasFiner = l + 1 < levels.count && levels.level[l + 1].isFilled;
         const GluedBorder* glued = border.isGluedAt(m) ? &border : nullptr;
-        const auto codeOne = [&](unsigned orientation, std::uint32_t i, std::uint32_t j,
-                                 const SharedDetail& shared, std::uint32_t bi, std::uint32_t bj) {
-            const std::size_t index = codedIndex(n, i, j);
-            const std::size_t parent = codedIndex(m, i / 4 * 2 + i % 2, j / 4 * 2 + j % 2);
-            const std::size_t children = codedIndex(2 * n - 1, i / 2 * 4 + i % 2, j / 2 * 4 + j % 2);
-            place.orientation = orientation;
-            for (unsigned c = 0; c < kComponents; ++c) place.known[c] = level.known[c] + index;
-            for (unsigned c = 0; c < components; ++c) {
-                if (!level.blocks.isFilled(bi, bj, c == 0 ? 0 : 1)) continue;
-                place.parent = coarser == nullptr ? nullptr : coarser->known[c] + parent;
-                place.children = finer == nullptr ? nullptr : finer->known[c] + children;
-                const Surroundings around = surroundingsOf(place, c);
-                const std::int32_t exact = whole(l, c, index);
-                const auto size = static_cast<std::uint32_t>(magnitudeOf(exact) >> pass);
-                std::int32_t& q = level.q[c][index];
-                std::int32_t more = 0;
-                if (q != 0) {
-                    const bool bit = codeNext(coder, models, around, *place.known[c], (size & 1u) != 0);
-                    if (bit) more = q < 0 ? -(1 << pass) : 1 << pass;
-                } else if (codeGrowth(coder, models, place, around, c, size != 0)) {
-                    const bool negative =
-                        codeDetailSign(coder, models, place, &q,
-                                       coarser == nullptr ? nullptr : coarser->q[c] + parent, c, exact < 0);
-                    more = negative ? -(1 << pass) : 1 << pass;
-                }
-                if (coder.hasEnded()) return false;
-                if (more == 0) continue;
-                q += more;
-                std::uint8_t& known = level.known[c][index];
-                if (known < 255) ++known;
-                if (shared.mate == GluedBorder::kNoMate) continue;
-                const GridPoint other = borderPoint(n, shared.mate);
-                const std::size_t copy = codedIndex(n, other.i, other.j);
-                level.q[c][copy] = q;
-                level.known[c][copy] = known;
-            }
-            return true;
-        };
-        const bool goesOn = visitDetails(
-            glued, n,
-            [&](std::uint32_t bi, std::uint32_t bj) {
-                return level.blocks.isFilled(bi, bj, 0) || level.blocks.isFilled(bi, bj, 1);
-            },
-            codeOne);
-        if (!goesOn) return false;
+        if (!(hasFiner ? codeBands<true>(coder, models, levels, glued, components, l, pass, whole)
+                       : codeBands<false>(coder, models, levels, glued, components, l, pass, whole)))
+            return false;
     }
     return true;
 }

@@ -7,6 +7,7 @@
 #include "image_header.h"
 #include "range_decoder.h"
 #include "seam_code.h"
+#include "surface_normals.h"
 #include "triangulate.h"
 
 #include <cstring>
@@ -77,7 +78,8 @@ std::uint64_t workspaceOf(const File& file)
                                Arena::sizeOf<std::uint32_t>(borderSize(file.widest));
     const std::uint64_t mesh = Arena::sizeOf<std::uint32_t>(borderSize(grid)) +
                                Arena::sizeOf<std::uint32_t>(std::size_t{grid} * grid);
-    std::uint64_t most = mesh;
+    std::uint64_t most = Arena::sizeOf<double>(normalScratch(grid));
+    if (mesh > most) most = mesh;
     const std::uint64_t geometry = imageWorkspace(file.geometry);
     const std::uint64_t normals = file.normals.grid != 0 ? imageWorkspace(file.normals) : 0;
     if (geometry > most) most = geometry;
@@ -342,6 +344,25 @@ gim_status gim_decode_normals(const void* bytes, size_t size, const gim_limits* 
     if (status == ReadStatus::Ok && file.normals.coding != GIM_CODING_FLOAT)
         normalize(normals, std::size_t{file.normals.grid} * file.normals.grid);
     return toPublic(status);
+}
+
+gim_status gim_estimate_normals(const void* bytes, size_t size, const gim_limits* limits, uint32_t flags,
+                                uint32_t level, void* workspace, size_t workspace_size, const float* xyz,
+                                float* normals)
+{
+    if (workspace == nullptr || xyz == nullptr || normals == nullptr) return GIM_MISUSE;
+    File file;
+    ReadStatus status = openFile(bytes, size, limits, (flags & GIM_PREFIX) != 0, &file);
+    if (status != ReadStatus::Ok) return toPublic(status);
+    if (workspace_size < file.workspace) return GIM_MISUSE;
+    Arena arena(workspace, workspace_size);
+    Level open;
+    status = openLevel(file, flags, level, arena, &open);
+    if (status != ReadStatus::Ok) return toPublic(status);
+    auto* scratch = arena.take<double>(normalScratch(open.grid));
+    if (scratch == nullptr) return GIM_MISUSE;
+    estimateNormals(open.grid, open.stride, file.geometry.grid, xyz, open.classes, scratch, normals);
+    return GIM_OK;
 }
 
 gim_status gim_read_attribute(const void* bytes, size_t size, const gim_limits* limits, uint32_t index,

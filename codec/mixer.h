@@ -2,6 +2,11 @@
 
 #include "bit_model.h"
 
+#include <utility>
+#if defined(__SSE2__) && !defined(GIMG_SCALAR)
+#include <emmintrin.h>
+#endif
+
 namespace gimg::codec {
 
 // Several estimates of one probability are combined in the logistic domain: stretch(p) = ln(p / (1 - p)),
@@ -43,65 +48,95 @@ struct StretchTable
 };
 inline constexpr StretchTable kStretch{};
 
+/// Up to eight numbers of 16 bits. With SSE2 they are one vector; what comes out is the same without.
+struct Lanes
+{
+    static constexpr unsigned kCount = 8;
+#if defined(__SSE2__) && !defined(GIMG_SCALAR)
+    __m128i all = _mm_setzero_si128();
+
+    template <unsigned K> void set(std::int16_t value) { all = _mm_insert_epi16(all, value, K); }
+
+    /// At most 2^29 for weights and stretched estimates.
+    int times(const Lanes& other) const
+    {
+        const __m128i pairs = _mm_madd_epi16(all, other.all);
+        const __m128i halves = _mm_add_epi32(pairs, _mm_shuffle_epi32(pairs, 0x4E));
+        return _mm_cvtsi128_si32(_mm_add_epi32(halves, _mm_shuffle_epi32(halves, 0xB1)));
+    }
+
+    /// Adds other * part / 2^15, rounded, and clamps to +-most.
+    void move(const Lanes& other, std::int16_t part, std::int16_t most)
+    {
+        const __m128i twice = _mm_add_epi16(other.all, other.all);
+        const __m128i product = _mm_mulhi_epi16(twice, _mm_set1_epi16(part));
+        const __m128i moves = _mm_srai_epi16(_mm_add_epi16(product, _mm_set1_epi16(1)), 1);
+        const __m128i limit = _mm_set1_epi16(most);
+        all = _mm_min_epi16(_mm_add_epi16(all, moves), limit);
+        all = _mm_max_epi16(all, _mm_sub_epi16(_mm_setzero_si128(), limit));
+    }
+#else
+    std::int16_t all[kCount] = {};
+
+    template <unsigned K> void set(std::int16_t value) { all[K] = value; }
+
+    int times(const Lanes& other) const
+    {
+        int sum = 0;
+        for (unsigned k = 0; k < kCount; ++k) sum += static_cast<int>(all[k]) * other.all[k];
+        return sum;
+    }
+
+    void move(const Lanes& other, std::int16_t part, std::int16_t most)
+    {
+        for (unsigned k = 0; k < kCount; ++k) {
+            const int product = (2 * other.all[k] * part) >> 16;
+            const int moved = all[k] + ((product + 1) >> 1);
+            all[k] = static_cast<std::int16_t>(moved < -most ? -most : moved > most ? most : moved);
+        }
+    }
+#endif
+};
+
 /// Weights of `Count` estimates, in units of 2^-12.
 template <unsigned Count> struct MixWeights
 {
-    static_assert(Count <= 8);
+    static_assert(Count <= Lanes::kCount);
     static constexpr int kUnitBits = 12;
     /// Weights stay within 8 of 0, whatever is coded.
     static constexpr std::int16_t kMost = 32600;
     static constexpr std::int16_t kStart = static_cast<std::int16_t>((1 << kUnitBits) * 13 / 10 / Count);
 
-    std::int16_t weight[Count];
+    Lanes weight;
 
-    constexpr MixWeights() : weight()
+    MixWeights()
     {
-        for (unsigned k = 0; k < Count; ++k) weight[k] = kStart;
+        setAll(std::make_integer_sequence<unsigned, Count>());
     }
 
-    /// At most 2^29.
-    int times(const std::int16_t (&stretched)[Count]) const
-    {
-        int sum = 0;
-        for (unsigned k = 0; k < Count; ++k) sum += static_cast<int>(weight[k]) * stretched[k];
-        return sum;
-    }
-
-    /// Moves each weight by stretched * error / 2^19, rounded.
-    /// @param error  in 2^-15
-    void learn(const std::int16_t (&stretched)[Count], int error)
-    {
-        const auto part = static_cast<std::int16_t>(error >> 3);
-        for (unsigned k = 0; k < Count; ++k) {
-            const auto twice = static_cast<std::int16_t>(2 * stretched[k]);
-            const auto moves = static_cast<std::int16_t>((twice * part) >> 16);
-            const auto moved = static_cast<std::int16_t>(weight[k] + ((moves + 1) >> 1));
-            const std::int16_t low = moved < -kMost ? static_cast<std::int16_t>(-kMost) : moved;
-            weight[k] = low > kMost ? kMost : low;
-        }
-    }
+private:
+    template <unsigned... K> void setAll(std::integer_sequence<unsigned, K...>) { (weight.set<K>(kStart), ...); }
 };
 
-template <unsigned Count> struct Stretched
+template <unsigned... K>
+Lanes stretched(BitModel* const* models, std::integer_sequence<unsigned, K...>)
 {
-    std::int16_t value[Count] = {};
-
-    explicit Stretched(BitModel* const (&models)[Count])
-    {
-        for (unsigned k = 0; k < Count; ++k) value[k] = kStretch.value[models[k]->zero() >> 3];
-    }
-};
+    Lanes lanes;
+    (lanes.set<K>(kStretch.value[models[K]->zero() >> 3]), ...);
+    return lanes;
+}
 
 /// One bit whose probability is mixed from the models' estimates. Bits are coded as
 /// coder.code(probability of zero, bit).
 template <unsigned Count, class Coder>
 bool codeMixed(Coder& coder, BitModel* const (&models)[Count], MixWeights<Count>& weights, bool bit)
 {
-    const Stretched<Count> stretched(models);
-    const std::uint32_t zero = squash(weights.times(stretched.value) >> MixWeights<Count>::kUnitBits);
+    const Lanes estimates = stretched(models, std::make_integer_sequence<unsigned, Count>());
+    const std::uint32_t zero = squash(weights.weight.times(estimates) >> MixWeights<Count>::kUnitBits);
     const bool one = coder.code(zero, bit);
     if (!Coder::kAdapts) return one;
-    weights.learn(stretched.value, (one ? 0 : 1 << kProbabilityBits) - static_cast<int>(zero));
+    const int error = (one ? 0 : 1 << kProbabilityBits) - static_cast<int>(zero);
+    weights.weight.move(estimates, static_cast<std::int16_t>(error >> 3), MixWeights<Count>::kMost);
     for (unsigned k = 0; k < Count; ++k) models[k]->update(one);
     return one;
 }

@@ -37,6 +37,8 @@ public:
     {
         return (flags_[at(bi, bj)] >> direction & 1u) != 0;
     }
+    /// Bit 0: the normal, bit 1: the tangents.
+    unsigned flags(std::uint32_t bi, std::uint32_t bj) const { return flags_[at(bi, bj)]; }
     void fill(std::uint32_t bi, std::uint32_t bj, unsigned direction)
     {
         flags_[at(bi, bj)] |= static_cast<std::uint8_t>(1u << direction);

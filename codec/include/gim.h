@@ -231,6 +231,15 @@ GIM_API gim_status gim_build_mesh(const void* bytes, size_t size, const gim_limi
                                   uint32_t level, void* workspace, size_t workspace_size, const float* xyz,
                                   uint32_t* vertex_of_sample, uint32_t* sample_of_vertex, uint32_t* triangles);
 
+/* Normals of a level of detail, for files without a normal image: unit vectors, area-weighted means over the cells
+ * around each sample of the level, across the seam too; (0, 0, 1) where the surface has no area.
+ * xyz      the decoded geometry
+ * normals  room for 3 * info.grid * info.grid floats; receives those of the level's samples, where `xyz` has
+ *          them: a vertex v of gim_build_mesh has the normal at normals + 3 * sample_of_vertex[v] */
+GIM_API gim_status gim_estimate_normals(const void* bytes, size_t size, const gim_limits* limits,
+                                        uint32_t flags, uint32_t level, void* workspace,
+                                        size_t workspace_size, const float* xyz, float* normals);
+
 #ifdef __cplusplus
 }
 #endif

@@ -368,6 +368,46 @@ TEST(Mesh, InteriorCellsUseTheShorterDiagonal)
         }
 }
 
+TEST(Mesh, NormalsAreThoseOfTheTorusAtEveryLevelAndAcrossTheSeam)
+{
+    // Coordinates whose squares no float holds; errors fall with the square of the spacing.
+    const std::uint32_t grid = 129;
+    const std::vector<float> exact = torusNormals(grid);
+    for (const float scale : {1.0f, 1e25f, 1e-25f}) {
+        std::vector<float> xyz = torusImage(grid);
+        for (float& value : xyz) value *= scale;
+        const auto bytes = encoded(torusSource(xyz, grid), {GIM_CODING_FLOAT, 0, 0});
+        const gim_info info = probed(bytes);
+        std::vector<unsigned char> work(info.workspace);
+        double before = 0;
+        for (std::uint32_t level = 0; level < 3; ++level) {
+            std::vector<float> normals(xyz.size(), 7);
+            ASSERT_EQ(gim_estimate_normals(bytes.data(), bytes.size(), nullptr, 0, level, work.data(), work.size(),
+                                           xyz.data(), normals.data()),
+                      GIM_OK);
+            double worst = 0;
+            for (std::uint32_t j = 0; j < grid; ++j)
+                for (std::uint32_t i = 0; i < grid; ++i) {
+                    const float *n = &normals[3 * (j * std::size_t{grid} + i)],
+                                *e = &exact[3 * (j * std::size_t{grid} + i)];
+                    if (i % (1u << level) != 0 || j % (1u << level) != 0) {
+                        ASSERT_EQ(n[0], 7) << "left alone";
+                        continue;
+                    }
+                    const double x = n[1] * double{e[2]} - n[2] * double{e[1]}, y = n[2] * double{e[0]} - n[0] * double{e[2]},
+                                 z = n[0] * double{e[1]} - n[1] * double{e[0]};
+                    worst = std::max(worst, std::sqrt(x * x + y * y + z * z));
+                    EXPECT_GT(n[0] * e[0] + n[1] * e[1] + n[2] * e[2], 0.9);
+                }
+            if (level == 0)
+                EXPECT_LT(worst, 1e-3);
+            else
+                EXPECT_NEAR(worst / before, 4, 0.4);
+            before = worst;
+        }
+    }
+}
+
 TEST(RateControl, NeverExceedsAndComesClose)
 {
     const std::vector<float> xyz = bumpyImage(129, 2);

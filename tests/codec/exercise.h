@@ -60,6 +60,14 @@ inline gim_status exerciseDecoder(const std::uint8_t* bytes, std::size_t size, s
                 if (v >= counts.vertices) std::abort();
             for (const std::uint32_t s : vertices)
                 if (s >= xyz.size() / 3) std::abort();
+            std::vector<float> normals(xyz.size());
+            if (gim_estimate_normals(bytes, size, &limits, flags, level, work.data(), work.size(), xyz.data(),
+                                     normals.data()) != GIM_OK)
+                std::abort();
+            for (const std::uint32_t s : vertices) {
+                const float *n = &normals[3 * std::size_t{s}], length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+                if (!(length > 0.999f && length < 1.001f)) std::abort();
+            }
         }
     }
     if (info.normal_grid != 0) {

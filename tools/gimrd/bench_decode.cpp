@@ -1,7 +1,6 @@
 #include "bench_decode.h"
 
 #include <chrono>
-#include <cmath>
 #include <cstring>
 
 namespace gimg::gimrd {
@@ -15,34 +14,6 @@ double millisecondsSince(Clock::time_point start)
 }
 
 Error refused(gim_status status) { return {ErrorKind::CodecFailure, gim_status_text(status)}; }
-
-// Area-weighted: the cross product of two edges is as long as twice the triangle's area.
-void addFaceNormals(const std::vector<std::uint32_t>& triangles, const std::vector<float>& positions,
-                    std::vector<float>& normals)
-{
-    for (size_t t = 0; t + 2 < triangles.size(); t += 3) {
-        const float* a = &positions[size_t{3} * triangles[t]];
-        const float* b = &positions[size_t{3} * triangles[t + 1]];
-        const float* c = &positions[size_t{3} * triangles[t + 2]];
-        const float u[3] = {b[0] - a[0], b[1] - a[1], b[2] - a[2]};
-        const float v[3] = {c[0] - a[0], c[1] - a[1], c[2] - a[2]};
-        const float n[3] = {u[1] * v[2] - u[2] * v[1], u[2] * v[0] - u[0] * v[2], u[0] * v[1] - u[1] * v[0]};
-        for (size_t corner = 0; corner < 3; ++corner) {
-            float* sum = &normals[size_t{3} * triangles[t + corner]];
-            for (size_t k = 0; k < 3; ++k) sum[k] += n[k];
-        }
-    }
-}
-
-void normalize(std::vector<float>& normals)
-{
-    for (size_t k = 0; k + 2 < normals.size(); k += 3) {
-        float* n = &normals[k];
-        const float length = std::sqrt(n[0] * n[0] + n[1] * n[1] + n[2] * n[2]);
-        if (!(length > 0)) continue;
-        for (size_t c = 0; c < 3; ++c) n[c] /= length;
-    }
-}
 
 } // namespace
 
@@ -61,7 +32,7 @@ Result<GimDecoder> GimDecoder::open(std::vector<std::uint8_t> file)
     const size_t normals = size_t{d.info_.normal_grid} * d.info_.normal_grid;
     d.xyz_.resize(size_t{3} * d.info_.grid * d.info_.grid);
     d.positions_.resize(size_t{3} * d.counts_.vertices);
-    d.normals_.resize(3 * (normals != 0 ? normals : d.counts_.vertices));
+    d.normals_.resize(normals != 0 ? 3 * normals : d.xyz_.size());
     d.sampleOfVertex_.resize(d.counts_.vertices);
     d.triangles_.resize(size_t{3} * d.counts_.triangles);
     return d;
@@ -96,10 +67,8 @@ gim_status GimDecoder::findNormals()
     if (info_.normal_grid != 0)
         return gim_decode_normals(file_.data(), file_.size(), nullptr, 0, workspace_.data(),
                                   workspace_.size(), normals_.data());
-    std::memset(normals_.data(), 0, normals_.size() * sizeof(float));
-    addFaceNormals(triangles_, positions_, normals_);
-    normalize(normals_);
-    return GIM_OK;
+    return gim_estimate_normals(file_.data(), file_.size(), nullptr, 0, 0, workspace_.data(), workspace_.size(),
+                                xyz_.data(), normals_.data());
 }
 
 Result<DecodeTimes> GimDecoder::run()
