@@ -63,7 +63,7 @@ float normalStepOf(const std::vector<FieldSet::Chunk>& fields)
 
 Encoder::Encoder(const Source& source, std::shared_ptr<const FieldSet> fields)
     : seam_(source.seam), word_(encodeSeam(source.seam)), xyz_(source.xyz.begin(), source.xyz.end()),
-      surfaceEncoder_(std::make_shared<SurfaceEncoder>(source.seam, source.grid)),
+      surfaceEncoder_(std::make_shared<SurfaceEncoder>(source.seam, source.grid, source.smoothLevels)),
       surface_(surfaceEncoder_->transform(xyz_)), fields_(std::move(fields))
 {
 }
@@ -86,15 +86,13 @@ Encoder Encoder::withFieldsOf(const Encoder& other) const
     return out;
 }
 
-Outcome<Encoder> Encoder::slid(float step, int rounds, double octaves, const Retarget& retarget) const
+Outcome<Encoder> Encoder::slid(float step, std::span<const int> octaves, const Retarget& retarget) const
 {
     if (const std::string fault = stepFault(surface_, step, "the step"); !fault.empty())
         return EncodeError{EncodeError::Kind::BadSettings, fault, 0};
     Encoder moved = *this;
-    for (int round = 0; round < rounds; ++round) {
-        // The last round is at the step itself.
-        const double early = static_cast<double>(rounds - 1 - round) / rounds;
-        const auto coarser = static_cast<float>(static_cast<double>(step) * std::exp2(octaves * early));
+    for (const int octave : octaves) {
+        const float coarser = std::min(std::ldexp(step, octave), kLargestStep);
         const CodedSurface coded = surfaceEncoder_->encode(moved.surface_, parametersOf(coarser), false);
         retarget(coded.decoded, moved.xyz_);
         moved.surface_ = surfaceEncoder_->transform(moved.xyz_);

@@ -131,6 +131,7 @@ public:
 
     bool begin(const SurfaceLevel& level, const double* const (&prediction)[kComponents])
     {
+        if (level.index + surface_.smoothLevels >= surface_.levels.size()) return false;
         exact_ = &surface_.levels[level.index];
         here_ = &levels_.level[level.index];
         cost_.begin(*here_, level.index == 0 ? nullptr : &levels_.level[level.index - 1]);
@@ -296,8 +297,8 @@ void code(RangeEncoder* encoder, DetailModels& models, const Frames& frames, con
 
 } // namespace
 
-SurfaceEncoder::SurfaceEncoder(const Seam& seam, std::uint32_t grid)
-    : seam_(seam), grid_(grid), classes_(borderClasses(seam, grid))
+SurfaceEncoder::SurfaceEncoder(const Seam& seam, std::uint32_t grid, unsigned smoothLevels)
+    : seam_(seam), grid_(grid), smoothLevels_(smoothLevels), classes_(borderClasses(seam, grid))
 {
 }
 
@@ -309,7 +310,10 @@ SeamView SurfaceEncoder::view() const
 TransformedSurface SurfaceEncoder::transform(std::span<const float> samples) const
 {
     std::vector<std::uint32_t> mates(classes_.size());
-    return transform(samples, kComponents, 0, GluedBorder(view(), grid_, classes_.data(), mates.data()));
+    TransformedSurface surface =
+        transform(samples, kComponents, 0, GluedBorder(view(), grid_, classes_.data(), mates.data()));
+    surface.smoothLevels = smoothLevels_;
+    return surface;
 }
 
 // Channels beyond the last are zeros.

@@ -20,6 +20,7 @@ struct TransformedSurface
         double largest[3] = {};                  ///< length of a detail, by orientation
     };
     std::uint32_t grid = 0;
+    unsigned smoothLevels = 0; ///< of the levels so many of the finest are not to be coded
     std::vector<Level> levels; ///< the coarsest first
     double coarse[kComponents][kCoarsest * kCoarsest] = {};
     double largest = 0;  ///< magnitude of any coefficient
@@ -55,7 +56,8 @@ class SurfaceEncoder
 {
 public:
     /// The seam must be without fault, and `grid` a refinement of its lowest grid.
-    SurfaceEncoder(const Seam& seam, std::uint32_t grid);
+    /// @param smoothLevels  how many of a surface's finest levels get no details
+    SurfaceEncoder(const Seam& seam, std::uint32_t grid, unsigned smoothLevels = 0);
 
     /// @param samples  3 grid^2 finite numbers; glued samples are averaged
     TransformedSurface transform(std::span<const float> samples) const;
@@ -81,6 +83,7 @@ private:
 
     Seam seam_;
     std::uint32_t grid_;
+    unsigned smoothLevels_;
     std::vector<std::uint32_t> classes_;
 };
 

@@ -2,6 +2,10 @@
 
 #include "gimg/decode.h"
 
+#include <numeric>
+#include <optional>
+#include <span>
+
 namespace gimg {
 
 Error fromCodec(const codec::EncodeError& error)
@@ -11,21 +15,54 @@ Error fromCodec(const codec::EncodeError& error)
     return {target ? ErrorKind::TargetUnreachable : ErrorKind::BadArgument, error.message};
 }
 
+namespace {
+
+// None if so few bytes leave hardly any surface.
+Result<std::optional<SurfaceDistance>> distanceOf(std::span<const std::uint8_t> bytes, unsigned flags,
+                                                  const SurfaceMeasure& measure)
+{
+    const Result<DecodedImages> images = decodeImages(bytes, flags);
+    if (!images) return images.error();
+    const Result<Mesh> mesh = levelMesh(bytes, *images, 0, flags);
+    if (!mesh) return mesh.error();
+    if (!(surfaceArea(*mesh) > 0)) return std::optional<SurfaceDistance>();
+    const Result<SurfaceDistance> distance = measure.against(*mesh);
+    if (!distance && distance.error().kind == ErrorKind::EmptyMesh) return std::optional<SurfaceDistance>();
+    if (!distance) return distance.error();
+    return std::optional(*distance);
+}
+
+} // namespace
+
+double CodedFile::worth() const
+{
+    return std::accumulate(prefixPsnr.begin(), prefixPsnr.end(), psnr) / static_cast<double>(1 + prefixPsnr.size());
+}
+
 Result<CodedFile> judged(Result<codec::EncodedFile> encoded, const SurfaceMeasure& measure)
 {
     if (!encoded) return encoded.error();
-    CodedFile coded{std::move(encoded->bytes), encoded->step};
-    const Result<DecodedImages> images = decodeImages(coded.bytes);
-    if (!images) return images.error();
-    const Result<Mesh> mesh = levelMesh(coded.bytes, *images, 0);
-    if (!mesh) return mesh.error();
-    if (!(surfaceArea(*mesh) > 0)) return coded; // so few bytes that nothing is left
-    const Result<SurfaceDistance> distance = measure.against(*mesh);
-    if (!distance && distance.error().kind == ErrorKind::EmptyMesh) return coded; // or next to nothing
+    CodedFile coded;
+    coded.bytes = std::move(encoded->bytes);
+    coded.step = encoded->step;
+    const Result<std::optional<SurfaceDistance>> distance = distanceOf(coded.bytes, 0, measure);
     if (!distance) return distance.error();
-    coded.psnr = distance->psnr();
-    coded.maxError = distance->hausdorff() / distance->diagonal;
+    if (!*distance) return coded;
+    coded.psnr = (*distance)->psnr();
+    coded.maxError = (*distance)->hausdorff() / (*distance)->diagonal;
     return coded;
+}
+
+Status judgePrefixes(CodedFile& file, const SurfaceMeasure& measure)
+{
+    file.prefixPsnr.clear();
+    for (const std::size_t part : {2, 4}) {
+        const std::span<const std::uint8_t> prefix(file.bytes.data(), file.bytes.size() / part);
+        const Result<std::optional<SurfaceDistance>> distance = distanceOf(prefix, GIM_PREFIX, measure);
+        if (!distance && distance.error().kind != ErrorKind::FileTruncated) return distance.error();
+        file.prefixPsnr.push_back(distance && *distance ? (*distance)->psnr() : 0);
+    }
+    return Done{};
 }
 
 codec::Source sourceOf(const GridSeam& seam, const FloatImage& geometry, const FloatImage& normals,
@@ -45,9 +82,11 @@ codec::Source sourceOf(const GridSeam& seam, const FloatImage& geometry, const F
 }
 
 Result<codec::Encoder> encoderOf(const GridSeam& seam, const FloatImage& geometry, const FloatImage& normals,
-                                 std::span<const SampledAttribute> attributes)
+                                 std::span<const SampledAttribute> attributes, int smoothLevels)
 {
-    return resultOf(codec::Encoder::prepare(sourceOf(seam, geometry, normals, attributes)));
+    codec::Source source = sourceOf(seam, geometry, normals, attributes);
+    source.smoothLevels = static_cast<unsigned>(smoothLevels);
+    return resultOf(codec::Encoder::prepare(source));
 }
 
 } // namespace gimg

@@ -2,22 +2,53 @@
 
 namespace gimg {
 
+namespace {
+
+// Down from `deepest` again and again; the last round is at the step of the whole file.
+std::vector<int> inTurn(int rounds, int deepest)
+{
+    std::vector<int> octaves;
+    for (int round = 0; round < rounds; ++round)
+        octaves.push_back(round + 1 == rounds ? 0 : deepest - round % (deepest + 1));
+    return octaves;
+}
+
+// Down once, each octave for as long as the others.
+std::vector<int> downOnce(int rounds, int deepest)
+{
+    std::vector<int> octaves;
+    for (int round = 0; round < rounds; ++round) octaves.push_back((deepest + 1) * (rounds - 1 - round) / rounds);
+    return octaves;
+}
+
+} // namespace
+
 Effort Effort::of(const EncodeOptions& options)
 {
-    constexpr double kEarlyOctaves = 1;
-    static constexpr Effort kEfforts[] = {
-        {1, 0, 0, 0.5, 0},   // 1
-        {3, 1, 0, 0.5, 0},   // 2
-        {3, 2, 0, 0.5, 0},   // 3
-        {3, 4, 0, 0.5, 0},   // 4
-        {3, 7, 0, 0.5, 0},   // 5
-        {3, 10, 0, 0.5, 0},  // 6
-        {3, 10, 2, 0.25, 0}, // 7
-        {3, 10, 4, 0.1, 0},  // 8
-        {3, 10, 7, 0, 0},    // 9
+    struct Row
+    {
+        int fitRounds, slides, refits;
+        double gridWorth;
     };
-    Effort effort = kEfforts[options.effort - 1];
-    if (options.progressive) effort.octaves = kEarlyOctaves;
+    static constexpr Row kEfforts[] = {
+        {1, 0, 0, 0.5},   // 1
+        {3, 1, 0, 0.5},   // 2
+        {3, 2, 0, 0.5},   // 3
+        {3, 4, 0, 0.5},   // 4
+        {3, 7, 0, 0.5},   // 5
+        {3, 10, 0, 0.5},  // 6
+        {3, 10, 2, 0.25}, // 7
+        {3, 10, 4, 0.1},  // 8
+        {3, 10, 7, 0},    // 9
+    };
+    const Row& row = kEfforts[options.effort - 1];
+    Effort effort{row.fitRounds, {}, row.refits, row.gridWorth, options.progressive};
+    if (row.slides == 0) return effort;
+    if (options.progressive)
+        effort.slides = {inTurn(row.slides + 3, 2), inTurn(row.slides + 2, 1), inTurn(row.slides + 5, 3),
+                         downOnce(row.slides + 4, 3)};
+    else
+        effort.slides = {inTurn(row.slides, 0)};
     return effort;
 }
 

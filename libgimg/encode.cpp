@@ -6,6 +6,7 @@
 #include "prepared.h"
 #include "stopwatch.h"
 
+#include <tbb/parallel_for.h>
 #include <tbb/parallel_invoke.h>
 
 #include <algorithm>
@@ -77,7 +78,7 @@ bool isSearched(EncodeTarget target)
 
 bool isBetter(const CodedFile& file, const CodedFile& than, EncodeTarget target)
 {
-    return target == EncodeTarget::Bytes ? file.psnr > than.psnr : file.bytes.size() < than.bytes.size();
+    return target == EncodeTarget::Bytes ? file.worth() > than.worth() : file.bytes.size() < than.bytes.size();
 }
 
 constexpr int kSmallestGrid = 129, kLargestGrid = 513; // that are chosen where the grid is left open
@@ -114,6 +115,11 @@ std::optional<Error> objectionTo(const EncodeOptions& options)
     if (options.threads < 0) return bad("the number of threads is negative");
     if (options.effort < EncodeOptions::kLeastEffort || options.effort > EncodeOptions::kMostEffort)
         return bad("effort " + std::to_string(options.effort) + " is not from 1 to 9");
+    if (options.smoothLevels < 0 || (options.grid != 0 && (options.grid - 1) >> options.smoothLevels < 2))
+        return bad(std::to_string(options.smoothLevels) + " smooth levels are more than the grid has");
+    if (options.smoothLevels > 0 && (options.coding != LossyCoding::Surface || options.target == EncodeTarget::Raw12 ||
+                                     options.target == EncodeTarget::RawFloat))
+        return bad("smooth levels are for the surface coding");
     if (options.features && !options.fit) return bad("grid lines along sharp edges need the fit");
     if (options.normals != 0 && !isImageSize(options.normals))
         return bad("normal image of " + std::to_string(options.normals) + " is not 2^k + 1 between 3 and " +
@@ -194,6 +200,7 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     source.fitRounds = options.fit ? effort.fitRounds : 0;
     source.refits = options.fit;
     source.features = options.features;
+    source.smoothLevels = options.smoothLevels;
     out.seconds.sample = watch.lap();
     measured();
     out.seconds.code = watch.lap();
@@ -261,13 +268,45 @@ Result<EncodedMesh> MeshEncoder::encodeAtAmpleGrid(const EncodeGoal& goal) const
     return encoded;
 }
 
+Result<CodedFile> MeshEncoder::Prepared::codeFor(const EncodeGoal& goal, Precision precision,
+                                                 const codec::Encoder& encoder, const EncodeProgress& told) const
+{
+    Result<CodedFile> coded = gimg::codeFor(goal, precision, encoder, measure, told);
+    if (coded && effort.prefixes && goal.target == EncodeTarget::Bytes)
+        if (const Status judgedToo = judgePrefixes(*coded, measure); !judgedToo) return judgedToo.error();
+    return coded;
+}
+
 // Codes the samples as they have slid. None where they cannot be coded for the goal: that is no loss.
 Result<std::optional<CodedFile>> MeshEncoder::Prepared::codeSlid(const GridEncoders::Slide& slide,
                                                                  const EncodeGoal& goal,
                                                                  const EncodeProgress& told) const
 {
-    Result<CodedFile> slid = codeFor(goal, Precision::File, slide.finished(), measure, told);
+    Result<CodedFile> slid = codeFor(goal, Precision::File, slide.finished(), told);
     return slid ? std::optional(std::move(*slid)) : std::nullopt;
+}
+
+// Slides in all ways that the effort knows, side by side, and keeps the best. Qualities have no prefixes to compare: they
+// take the first way.
+Result<std::optional<CodedFile>> MeshEncoder::Prepared::codeSlides(GridEncoders::Slide& slide, float step,
+                                                                   const EncodeGoal& goal) const
+{
+    const size_t ways = goal.target == EncodeTarget::Bytes ? effort.slides.size() : 1;
+    std::vector<GridEncoders::Slide> slides(ways, slide);
+    std::vector<Result<std::optional<CodedFile>>> coded(ways, std::optional<CodedFile>());
+    tbb::parallel_for(size_t{0}, ways, [&](size_t way) {
+        if (const Status moved = slides[way].move(step, effort.slides[way]); !moved)
+            coded[way] = moved.error();
+        else
+            coded[way] = codeSlid(slides[way], goal, way == 0 ? progress : EncodeProgress());
+    });
+    size_t best = 0;
+    for (size_t way = 0; way < ways; ++way) {
+        if (!coded[way]) return coded[way].error();
+        if (*coded[way] && (!*coded[best] || isBetter(**coded[way], **coded[best], goal.target))) best = way;
+    }
+    slide = std::move(slides[best]);
+    return std::move(coded[best]);
 }
 
 // The samples slide for the step that reaches the goal without. For a quality that step need not be exact,
@@ -278,17 +317,15 @@ Result<CodedFile> MeshEncoder::Prepared::codeOnceSlid(const codec::Encoder& stil
     constexpr double kMuchLarger = 1.05;
     const bool exact = goal.target == EncodeTarget::Bytes;
     Result<CodedFile> unslid =
-        codeFor(goal, exact ? Precision::File : Precision::Step, still, measure, progress);
+        codeFor(goal, exact ? Precision::File : Precision::Step, still, progress);
     if (!unslid) return unslid;
-    if (const Status moved = slide.move(stepToMeet(goal, *unslid), effort.slides, effort.octaves); !moved)
-        return moved.error();
-    Result<std::optional<CodedFile>> slid = codeSlid(slide, goal, progress);
+    Result<std::optional<CodedFile>> slid = codeSlides(slide, stepToMeet(goal, *unslid), goal);
     if (!slid) return slid.error();
     if (!exact) {
         const auto size = static_cast<double>(unslid->bytes.size());
         if (*slid && static_cast<double>((*slid)->bytes.size()) * kMuchLarger < size)
             return std::move(**slid);
-        unslid = codeFor(goal, Precision::File, still, measure, progress);
+        unslid = codeFor(goal, Precision::File, still, progress);
         if (!unslid) return *slid ? Result<CodedFile>(std::move(**slid)) : unslid;
     }
     return *slid && isBetter(**slid, *unslid, goal.target) ? std::move(**slid) : std::move(*unslid);
@@ -298,8 +335,8 @@ Result<CodedFile> MeshEncoder::Prepared::codeOnceSlid(const codec::Encoder& stil
 Result<CodedFile> MeshEncoder::Prepared::codeSliding(const GridEncoders::Sampled& sampled,
                                                      const EncodeGoal& goal, int refits) const
 {
-    if (goal.coding != LossyCoding::Surface || effort.slides == 0)
-        return codeFor(goal, Precision::File, sampled.encoder, measure, progress);
+    if (goal.coding != LossyCoding::Surface || effort.slides.empty())
+        return codeFor(goal, Precision::File, sampled.encoder, progress);
     Result<GridEncoders::Slide> slide = encoders->slide(sampled);
     if (!slide) return slide.error();
     Result<CodedFile> best = codeOnceSlid(sampled.encoder, *slide, goal);
@@ -312,12 +349,7 @@ Result<CodedFile> MeshEncoder::Prepared::codeSliding(const GridEncoders::Sampled
         std::optional<Result<std::optional<CodedFile>>> coded[2];
         tbb::parallel_invoke(
             [&] { coded[0] = codeSlid(refitted, goal, {}); },
-            [&] {
-                if (const Status moved = slide->move(best->step, effort.slides, effort.octaves); !moved)
-                    coded[1] = moved.error();
-                else
-                    coded[1] = codeSlid(*slide, goal, progress);
-            });
+            [&] { coded[1] = codeSlides(*slide, best->step, goal); });
         for (auto& made : coded) {
             if (!*made) return made->error();
             if (**made && isBetter(***made, *best, goal.target)) best = std::move(***made);

@@ -100,6 +100,7 @@ Result<MeshEncoder> MeshEncoder::prepareImage(const FloatImage& image, const Enc
     source.surface = glued;
     source.seam = found->seam;
     source.refits = true;
+    source.smoothLevels = options.smoothLevels;
     source.sample = [samples = std::move(found->image)](int n) -> Result<FloatImage> {
         if (n == samples.width) return samples;
         return Error{ErrorKind::BadArgument, "a geometry image is coded at its own grid"};

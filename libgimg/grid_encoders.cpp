@@ -56,7 +56,7 @@ Result<std::shared_ptr<const GridEncoders::Sampled>> GridEncoders::at(int grid, 
     const double fitSeconds = watch.lap();
     Result<std::vector<SampledAttribute>> attributes = attributesAt(*geometry);
     if (!attributes) return attributes.error();
-    Result<codec::Encoder> encoder = encoderOf(source_.seam, *geometry, normals, *attributes);
+    Result<codec::Encoder> encoder = encoderOf(source_.seam, *geometry, normals, *attributes, source_.smoothLevels);
     if (!encoder) return encoder.error();
     const double length = seamLength(source_.seam, *geometry);
     made =
@@ -108,10 +108,10 @@ Result<GridEncoders::Slide> GridEncoders::slide(const Sampled& sampled)
     return Slide(*this, sampled, std::move(*slide));
 }
 
-Status GridEncoders::Slide::move(float step, int rounds, double octaves)
+Status GridEncoders::Slide::move(float step, std::span<const int> octaves)
 {
     Result<codec::Encoder> moved = resultOf(encoder_.slid(
-        step, rounds, octaves,
+        step, octaves,
         [this](std::span<const float> decoded, std::span<float> targets) { slide_(decoded, targets); }));
     if (!moved) return moved.error();
     encoder_ = std::move(*moved);
@@ -120,21 +120,21 @@ Status GridEncoders::Slide::move(float step, int rounds, double octaves)
 
 bool GridEncoders::Slide::mayRefit() const
 {
-    return encoders_.source_.refits && sampled_.geometry.width <= EncodeOptions::kLargestFit;
+    return encoders_->source_.refits && sampled_->geometry.width <= EncodeOptions::kLargestFit;
 }
 
 Status GridEncoders::Slide::refit(const FloatImage& decoded)
 try {
     constexpr int kRounds = 2;
     constexpr double kSmoothing = 0; // decoded samples lie where they cost little: they stay there
-    const GridSource& source = encoders_.source_;
+    const GridSource& source = encoders_->source_;
     const Result<GluedGrid> grid = gridOf(decoded, source.seam);
     if (!grid) return grid.error();
     if (!rounds_) rounds_ = std::make_shared<FitRounds>(*source.surface, decoded.width * decoded.height);
     const FloatImage fitted = rounds_->run(*grid, decoded, kRounds, kSmoothing);
-    Result<codec::Encoder> encoder = encoderOf(source.seam, fitted, {});
+    Result<codec::Encoder> encoder = encoderOf(source.seam, fitted, {}, {}, source.smoothLevels);
     if (!encoder) return encoder.error();
-    Result<SampleSlide> slide = SampleSlide::of(encoders_.slideSurface_, source.seam, fitted);
+    Result<SampleSlide> slide = SampleSlide::of(encoders_->slideSurface_, source.seam, fitted);
     if (!slide) return slide.error();
     encoder_ = std::move(*encoder);
     slide_ = std::move(*slide);

@@ -11,6 +11,7 @@
 #include <memory>
 #include <mutex>
 #include <optional>
+#include <span>
 
 namespace gimg {
 
@@ -24,7 +25,8 @@ struct GridSource
     std::shared_ptr<const AttributeSampler> attributes; ///< null: none
     int fitRounds = 0;                                  ///< 0: samples stay as they are
     bool features = false;
-    bool refits = false; ///< whether Slide::refit is allowed
+    bool refits = false;  ///< whether Slide::refit is allowed
+    int smoothLevels = 0; ///< see codec::Source
 };
 
 /// Encoders of one surface at several grids, each made when first asked for. Thread-safe.
@@ -51,9 +53,9 @@ public:
     class Slide
     {
     public:
-        /// Codes at this step and moves the targets, as often as told.
+        /// Codes at this step, or coarser ones, and moves the targets, as often as told.
         /// @param octaves  see codec::Encoder::slid
-        Status move(float step, int rounds, double octaves);
+        Status move(float step, std::span<const int> octaves);
 
         /// Fits the surface of a decoded image anew, and takes its samples: where samples have slid to they
         /// want another height above the mesh.
@@ -61,16 +63,16 @@ public:
         bool mayRefit() const;
 
         /// The encoder of the samples where they are; normals and attributes are those of where they were.
-        codec::Encoder finished() const { return encoder_.withFieldsOf(sampled_.encoder); }
+        codec::Encoder finished() const { return encoder_.withFieldsOf(sampled_->encoder); }
 
     private:
         friend class GridEncoders;
         Slide(const GridEncoders& encoders, const Sampled& sampled, SampleSlide slide)
-            : encoders_(encoders), sampled_(sampled), encoder_(sampled.encoder), slide_(std::move(slide))
+            : encoders_(&encoders), sampled_(&sampled), encoder_(sampled.encoder), slide_(std::move(slide))
         {
         }
-        const GridEncoders& encoders_;
-        const Sampled& sampled_;
+        const GridEncoders* encoders_;
+        const Sampled* sampled_;
         codec::Encoder encoder_;
         SampleSlide slide_;
         std::shared_ptr<FitRounds> rounds_; // made when needed

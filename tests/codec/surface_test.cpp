@@ -212,5 +212,38 @@ TEST(SurfaceCoding, EmptyBlocksTakeAlmostNothing)
     EXPECT_LT(bytes(257), 2.3 * bytes(33));
 }
 
+// Samples that no detail was coded for lie as near to the torus as those between which they lie, across the seam too.
+TEST(SurfaceSmoothLevels, LieBetweenTheCodedSamples)
+{
+    const std::uint32_t grid = 129, every = 4;
+    const std::vector<float> xyz = samples::torusImage(grid);
+    Source source;
+    source.grid = grid;
+    source.seam = samples::torusSeam(17);
+    source.xyz = xyz;
+    source.smoothLevels = 2;
+    const Settings settings{GIM_CODING_SURFACE, 0.002f, 0};
+    const auto smooth = samples::encoded(source, settings);
+    const std::vector<float> out = samples::decoded(smooth);
+    double sums[2] = {}, counts[2] = {};
+    for (std::uint32_t j = 0; j < grid; ++j)
+        for (std::uint32_t i = 0; i < grid; ++i) {
+            const float* p = &out[3 * (j * std::size_t{grid} + i)];
+            const double ring = std::hypot(p[0], p[1]) - 3, error = std::hypot(ring, p[2]) - 1;
+            const int between = i % every != 0 || j % every != 0 ? 1 : 0;
+            sums[between] += error * error;
+            counts[between] += 1;
+        }
+    const double coded = std::sqrt(sums[0] / counts[0]), between = std::sqrt(sums[1] / counts[1]);
+    EXPECT_GT(coded, 1e-5);
+    EXPECT_LT(coded, 2e-3);
+    EXPECT_NEAR(between / coded, 1, 0.5);
+    source.smoothLevels = 0;
+    EXPECT_LT(smooth.size(), samples::encoded(source, settings).size());
+    // As many as there are, or more: only the coarsest samples are left.
+    source.smoothLevels = 99;
+    EXPECT_LT(samples::encoded(source, settings).size(), 120u);
+}
+
 } // namespace
 } // namespace gimg::codec

@@ -76,6 +76,17 @@ TEST(EncodeScale, WhatFloat32CannotHoldIsRefusedAndWhatItHoldsBadlyIsSaid)
     EXPECT_FALSE(encodeMesh(point, forBytes(2000, 33)).ok());
 }
 
+TEST(EncodeSmoothLevels, AreRefusedWhereThereAreNone)
+{
+    const Mesh torus = shapes::torus(3, 1, 24, 12);
+    EncodeOptions options = forBytes(900, 33);
+    options.smoothLevels = 5;
+    EXPECT_EQ(encodeMesh(torus, options).error().kind, ErrorKind::BadArgument);
+    options.smoothLevels = 1;
+    options.target = EncodeTarget::Raw12;
+    EXPECT_EQ(encodeMesh(torus, options).error().kind, ErrorKind::BadArgument);
+}
+
 TEST(EncodeTiny, ATetrahedronAndATriangleWork)
 {
     Mesh tetrahedron;

@@ -125,6 +125,10 @@ void addOptions(CLI::App& app, Arguments& a)
     app.add_flag("--features", a.features,
                  "lay grid lines along the sharp edges of machine parts and the like")
         ->excludes(noFit);
+    app.add_option("--smooth-levels", a.smoothLevels,
+                   "keep this many of the finest levels free of details: a smooth fine mesh of few bytes")
+        ->check(CLI::Range(0, 11))
+        ->excludes(raw);
     app.add_flag("--progressive", a.progressive,
                  "let beginnings of the file serve too: better prefixes, a worse whole");
     app.add_option("--effort", a.effort, "time for quality: 1 (fast) to 9 (small files; minutes)")
@@ -242,6 +246,7 @@ std::vector<std::string> fileOptions(const Arguments& a)
     if (!a.raw.empty()) add("--raw", a.raw);
     if (a.fromImage) words.push_back("--from-image");
     if (a.tolerance) add("--tolerance", shortest(*a.tolerance));
+    if (a.smoothLevels != 0) add("--smooth-levels", std::to_string(a.smoothLevels));
     if (a.progressive) words.push_back("--progressive");
     if (a.effort != EncodeOptions().effort) add("--effort", std::to_string(a.effort));
     if (a.grid != 0) add("--grid", std::to_string(a.grid));
@@ -303,6 +308,7 @@ EncodeOptions encodeOptions(const Arguments& a)
     options.features = a.features;
     options.threads = a.threads;
     options.effort = a.effort;
+    options.smoothLevels = a.smoothLevels;
     options.progressive = a.progressive;
     options.coding = a.coding == "wavelet" ? LossyCoding::Wavelet : LossyCoding::Surface;
     options.density = a.density == "even" ? Density::Even : Density::Curvature;

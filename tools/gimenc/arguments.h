@@ -38,6 +38,7 @@ struct Arguments
     std::string weld = "auto";
     std::string param = "stretch";
     int effort = EncodeOptions().effort;
+    int smoothLevels = 0;
     bool progressive = false;
     bool fromImage = false;
     std::optional<double> tolerance;
