@@ -14,17 +14,18 @@ namespace {
 
 constexpr double kInfinity = std::numeric_limits<double>::infinity();
 
-/// Looks for integer vectors x_1 .. x_2g that have the inner products and intersection numbers of a short basis
-/// y_1 .. y_2g of the target's homology, one after the other.
+/// Looks for integer vectors x_1 .. x_2g that have the inner products and intersection numbers of a short
+/// basis y_1 .. y_2g of the target's homology, one after the other.
 ///
-/// If the distance is at most d, norms of corresponding classes differ by factors in [e^-d, e^d]. Say y* is the
-/// part of y_i at right angles to y_1 .. y_{i-1}, and c its coefficients: y_i = y* + sum c_j y_j. Then x_i = x* +
-/// sum c_j x_j, where x* has at most the squared length e^d |y*|^2 and a part along x_1 .. x_{i-1} no longer
-/// than (e^d - 1) e^(d/2) |y*|. That leaves few lattice points, and none of the images is missed.
+/// If the distance is at most d, norms of corresponding classes differ by factors in [e^-d, e^d]. Say y* is
+/// the part of y_i at right angles to y_1 .. y_{i-1}, and c its coefficients: y_i = y* + sum c_j y_j. Then
+/// x_i = x* + sum c_j x_j, where x* has at most the squared length e^d |y*|^2 and a part along x_1 .. x_{i-1}
+/// no longer than (e^d - 1) e^(d/2) |y*|. That leaves few lattice points, and none of the images is missed.
 class IsometrySearch
 {
 public:
-    IsometrySearch(const Eigen::MatrixXcd& first, const Eigen::MatrixXcd& target, const EquivalenceOptions& options)
+    IsometrySearch(const Eigen::MatrixXcd& first, const Eigen::MatrixXcd& target,
+                   const EquivalenceOptions& options)
         : first_(first), target_(target), norm_(periodNorm(first)), pairing_(periodPairing(first.rows())),
           bound_(options.tolerance), nodesLeft_(options.mostNodes)
     {
@@ -60,7 +61,8 @@ private:
             rest -= products.dot(coefficients);
             center = placed.transpose() * coefficients;
             const Eigen::MatrixXd dual = placed * norm_;
-            form += (1 / (along * along) - 1) * dual.transpose() * (dual * placed.transpose()).ldlt().solve(dual);
+            form +=
+                (1 / (along * along) - 1) * dual.transpose() * (dual * placed.transpose()).ldlt().solve(dual);
         }
         const Eigen::MatrixXi units = reducedLattice(form);
         const Eigen::MatrixXd u = units.cast<double>();

@@ -8,8 +8,8 @@
 namespace gimg {
 
 // Row operations on a basis B of the integer vectors. The Cholesky factor of B G B' holds the lengths of the
-// orthogonalised vectors on its diagonal and their projections beside it; it is made anew after every exchange,
-// which is quick enough for the sizes of periods.
+// orthogonalised vectors on its diagonal and their projections beside it; it is made anew after every
+// exchange, which is quick enough for the sizes of periods.
 Eigen::MatrixXi reducedLattice(const Eigen::MatrixXd& gram)
 {
     constexpr double kLovasz = 0.99;
@@ -62,7 +62,8 @@ struct Enumeration
         for (Eigen::Index j = i + 1; j < v.size(); ++j) beside += upper(i, j) * (v[j] - center[j]);
         const double middle = center[i] - beside / upper(i, i), reach = std::sqrt(budget) / upper(i, i);
         // (Beyond the range of integers, nothing is looked for.)
-        const double low = std::ceil(std::max(middle - reach, -1e9)), high = std::floor(std::min(middle + reach, 1e9));
+        const double low = std::ceil(std::max(middle - reach, -1e9)),
+                     high = std::floor(std::min(middle + reach, 1e9));
         for (double x = low; x <= high; ++x) {
             v[i] = static_cast<int>(x);
             const double step = upper(i, i) * (x - middle);

@@ -63,7 +63,8 @@ Result<ShapeFactors> shapeFactors(std::complex<double> tau)
     return ShapeFactors{angle * 180 / std::numbers::pi, std::max(1.0, std::abs(*reduced))};
 }
 
-Eigen::MatrixXcd transformedPeriods(const Eigen::MatrixXcd& periodMatrix, const Eigen::MatrixXi& transformation)
+Eigen::MatrixXcd transformedPeriods(const Eigen::MatrixXcd& periodMatrix,
+                                    const Eigen::MatrixXi& transformation)
 {
     const Eigen::Index g = periodMatrix.rows();
     const Eigen::MatrixXcd n = transformation.cast<std::complex<double>>();

@@ -6,9 +6,10 @@
 namespace gimg {
 namespace {
 
-// Numbers the wedges of one vertex: walks around it from corner to corner and begins a new one behind each slit
-// edge. (Corner k of face f is that of halfedge 3 f + k.)
-void openVertex(const Halfedges& he, const std::vector<bool>& slit, int v, std::vector<int>& wedge, int& count)
+// Numbers the wedges of one vertex: walks around it from corner to corner and begins a new one behind each
+// slit edge. (Corner k of face f is that of halfedge 3 f + k.)
+void openVertex(const Halfedges& he, const std::vector<bool>& slit, int v, std::vector<int>& wedge,
+                int& count)
 {
     int first = he.outgoing(v);
     if (!he.onBoundary(first)) {

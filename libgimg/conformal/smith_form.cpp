@@ -139,7 +139,8 @@ std::optional<std::vector<int64_t>> smithDiagonal(EdgeBasis& cycles)
                 if (times != 0) m.col(j) -= times * m.col(k);
             }
             if (isTooLarge(m) || isTooLarge(cycles.basis)) return std::nullopt;
-            if (!m.col(k).tail(m.rows() - k - 1).isZero() || !m.row(k).tail(m.cols() - k - 1).isZero()) continue;
+            if (!m.col(k).tail(m.rows() - k - 1).isZero() || !m.row(k).tail(m.cols() - k - 1).isZero())
+                continue;
             const std::optional<Place> bad = indivisible(m, k);
             if (!bad) break;
             m.col(k) += m.col(bad->column);
@@ -157,8 +158,8 @@ Result<SimplicialHomology> homologyBySmithForm(const std::vector<Triangle>& face
     for (size_t f = 0; f < faces.size(); ++f)
         for (int k = 0; k < 3; ++k)
             if (faces[f][k] < 0 || faces[f][k] >= vertexCount || faces[f][k] == faces[f][(k + 1) % 3])
-                return Error{ErrorKind::BadArgument, "face " + std::to_string(f) +
-                                                         " names a vertex twice or one that is not there"};
+                return Error{ErrorKind::BadArgument,
+                             "face " + std::to_string(f) + " names a vertex twice or one that is not there"};
     Boundaries boundaries = boundariesOf(faces, vertexCount);
     const Eigen::Index edges = boundaries.d2.rows();
     EdgeBasis chains{boundaries.d1.transpose(), Integers::Identity(edges, edges), std::move(boundaries.d2)};

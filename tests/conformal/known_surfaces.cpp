@@ -51,9 +51,11 @@ Mesh splitOnSphere(const Mesh& coarse, int n)
             if (weight == 0) corner = -1;
         std::sort(key.begin(), key.end());
         const auto [place, isNew] = known.try_emplace(
-            {key[0].first, key[0].second, key[1].first, key[1].second, key[2].first, key[2].second}, mesh.vertexCount());
+            {key[0].first, key[0].second, key[1].first, key[1].second, key[2].first, key[2].second},
+            mesh.vertexCount());
         if (isNew) {
-            const Vec3 p = a * coarse.positions[t[0]] + b * coarse.positions[t[1]] + c * coarse.positions[t[2]];
+            const Vec3 p =
+                a * coarse.positions[t[0]] + b * coarse.positions[t[1]] + c * coarse.positions[t[2]];
             mesh.positions.push_back(p.normalized());
         }
         return place->second;
@@ -115,7 +117,8 @@ bool isOnArc(const Mesh& mesh, int u, int v, const Vec3& p, const Vec3& q)
     const Vec3 normal = p.cross(q).normalized();
     const auto isInside = [&](const Vec3& x) {
         constexpr double kNear = 1e-9;
-        return std::abs(x.dot(normal)) < kNear && p.cross(x).dot(normal) > -kNear && x.cross(q).dot(normal) > -kNear;
+        return std::abs(x.dot(normal)) < kNear && p.cross(x).dot(normal) > -kNear &&
+               x.cross(q).dot(normal) > -kNear;
     };
     return isInside(mesh.positions[u]) && isInside(mesh.positions[v]);
 }
@@ -143,7 +146,8 @@ bool flipBadEdges(Mesh& mesh)
     for (int h = 0; h < he.count(); ++h) {
         const int t = he.twin(h), f = h / 3, g = t / 3;
         if (h > t || changed[f] || changed[g]) continue;
-        const int u = he.tail(h), v = he.head(h), p = he.tail(Halfedges::prev(h)), q = he.tail(Halfedges::prev(t));
+        const int u = he.tail(h), v = he.head(h), p = he.tail(Halfedges::prev(h)),
+                  q = he.tail(Halfedges::prev(t));
         if (angleOpposite(mesh, u, v, p) + angleOpposite(mesh, u, v, q) <= kPi + 1e-9) continue;
         if (edges.count({p, q}) || edges.count({q, p})) continue;
         mesh.faces[f] = {u, q, p};
@@ -173,7 +177,8 @@ PolyhedralSurface coverOverOctahedron(int n)
     const Mesh mesh = bipyramidSphere(4, n);
     const auto& p = mesh.positions; // corners 0 .. 3 around the equator, poles 4 and 5
     return doubleCover(mesh, [&](int u, int v) {
-        return isOnArc(mesh, u, v, p[0], p[1]) || isOnArc(mesh, u, v, p[2], p[4]) || isOnArc(mesh, u, v, p[3], p[5]);
+        return isOnArc(mesh, u, v, p[0], p[1]) || isOnArc(mesh, u, v, p[2], p[4]) ||
+               isOnArc(mesh, u, v, p[3], p[5]);
     });
 }
 
@@ -221,7 +226,8 @@ Mesh roughTorus(double major, double minor, int nu, int nv, double off, bool irr
             mesh.faces.push_back({a, b, c});
             mesh.faces.push_back({a, c, d});
         }
-    for (int sweep = 0; irregular && sweep < 100 && flipBadEdges(mesh); ++sweep) {}
+    for (int sweep = 0; irregular && sweep < 100 && flipBadEdges(mesh); ++sweep) {
+    }
     return mesh;
 }
 
