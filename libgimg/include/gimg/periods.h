@@ -50,7 +50,7 @@ struct EquivalenceOptions
 {
     double tolerance = 0.02;      ///< largest periodDistance that counts as equal
     bool allowReflection = false; ///< maps that reverse the orientation count, too
-    long mostNodes = 10'000'000;  ///< of the search
+    long mostNodes = 1'000'000;  ///< of the search tree that are visited
 };
 
 /// The outcome of a search for a change of basis that makes two period matrices equal.
