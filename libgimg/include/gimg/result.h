@@ -22,6 +22,8 @@ enum class ErrorKind
     NotOrientable,     ///< no consistent orientation exists
     SeveralComponents, ///< more than one connected component
     NotADisk,          ///< a disk was required
+    NotASphere,        ///< a closed surface of genus 0 was required
+    DegenerateFace,    ///< a face without area
     FlippedTriangle,   ///< no embedding without flipped triangles was found
     TargetUnreachable, ///< no file meets the requested size or quality
     BadArgument,       ///< a parameter is outside its documented range
