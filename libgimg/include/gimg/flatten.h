@@ -1,9 +1,9 @@
 #pragma once
 
 #include "gimg/border.h"
+#include "gimg/progress.h"
 #include "gimg/result.h"
 
-#include <functional>
 #include <vector>
 
 namespace gimg {
@@ -29,9 +29,6 @@ enum class FlattenEffort
     Trial,     ///< less far: the energy ends up a few per cent higher, which tells cuts apart
     Converged, ///< near a minimum on the finest level, where derivatives tell what moves of the border do
 };
-
-/// Called now and then with the fraction done, in [0,1].
-using Progress = std::function<void(double)>;
 
 /// Maps the disk onto the unit square. The interior is coarsened, the coarse mesh gets mean-value coordinates
 /// with the border where the layout put it, and vertices come back a level at a time, each placed inside its

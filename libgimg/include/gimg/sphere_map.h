@@ -1,0 +1,45 @@
+#pragma once
+
+#include "gimg/conformality.h"
+#include "gimg/flatten.h"
+#include "gimg/mesh.h"
+#include "gimg/moebius.h"
+#include "gimg/result.h"
+
+#include <vector>
+
+namespace gimg {
+
+struct SphereMapOptions
+{
+    bool centre = true; ///< bring the mass centre to the sphere's by a Moebius map
+};
+
+/// A surface on the unit sphere.
+struct SphereMap
+{
+    std::vector<Vec3> position; ///< of every vertex, of length 1
+    Conformality quality;       ///< the triangles of the sphere taken as flat ones
+    Vec3 massCentre;            ///< mean of the map over the surface's area
+    int flippedBefore = 0;      ///< triangles that were flipped before untangling
+    int untangled = 0;          ///< vertices that untangling has moved
+    int inflated = 0;           ///< vertices of limbs too long for doubles, which are wider than conformal
+    int iterations = 0;         ///< of the descent, where there was one
+};
+
+/// Maps a closed surface of genus 0 conformally onto the unit sphere, as far as triangles can be: no triangle
+/// is flipped, and the mass centre is the sphere's, which leaves a rotation open. The rotation is such that
+/// the surface's principal axes stay near their own.
+/// @param mesh  connected, manifold, oriented, closed, of genus 0, without faces of no area
+/// Errors: NotASphere (says what it is instead), DegenerateFace (names the first one), SeveralComponents,
+/// FlippedTriangle (says how many could not be untangled).
+/// Source: thesis chapter 5; Haker et al. 2000, "Conformal surface parameterization for texture mapping"; see
+/// docs/sphere.md.
+Result<SphereMap> sphereMap(const Mesh& mesh, const SphereMapOptions& options = {},
+                            const Progress& progress = {});
+
+/// Triangles of which the sphere is on the wrong side: those whose corners a, b, c do not have det(a, b, c)
+/// > 0. Exact: rounding plays no part.
+int flippedOnSphere(const std::vector<Triangle>& faces, const std::vector<Vec3>& position);
+
+} // namespace gimg
