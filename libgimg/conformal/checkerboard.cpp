@@ -25,8 +25,8 @@ const std::array<Color, 2>& pairOf(const Checkerboard& board, int face)
 
 } // namespace
 
-std::function<Color(int face, const Vec3& barycentric, const Vec3& point)> checkerboardColor(
-    CornerMap map, Checkerboard board)
+std::function<Color(int face, const Vec3& barycentric, const Vec3& point)>
+checkerboardColor(CornerMap map, Checkerboard board)
 {
     struct Kept
     {

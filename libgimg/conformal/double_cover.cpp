@@ -41,7 +41,8 @@ struct SplitSurface
 
 SplitSurface halveChords(const Mesh& mesh, const Halfedges& he, const std::vector<bool>& boundary)
 {
-    SplitSurface split{mesh.positions, {}, {}, std::vector<std::array<int, 2>>(3 * mesh.faces.size(), {-1, -1})};
+    SplitSurface split{
+        mesh.positions, {}, {}, std::vector<std::array<int, 2>>(3 * mesh.faces.size(), {-1, -1})};
     std::vector<int> middle(3 * mesh.faces.size(), -1);
     for (int h = 0; h < he.count(); ++h) {
         if (he.onBoundary(h) || middle[h] >= 0 || !boundary[he.tail(h)] || !boundary[he.head(h)]) continue;

@@ -1,4 +1,5 @@
-// gimparam: maps of a surface to the plane, the square and the sphere, and what its conformal structure tells.
+// gimparam: maps of a surface to the plane, the square and the sphere, and what its conformal structure
+// tells.
 #include "command.h"
 
 #include "../cli.h"
@@ -15,8 +16,7 @@ namespace {
 bool namesCommand(const CLI::App& app, const std::string& word)
 {
     if (word == "-h" || word == "--help" || word == "--version") return true;
-    const std::vector<const CLI::App*> commands =
-        app.get_subcommands([](const CLI::App*) { return true; });
+    const std::vector<const CLI::App*> commands = app.get_subcommands([](const CLI::App*) { return true; });
     return std::any_of(commands.begin(), commands.end(),
                        [&word](const CLI::App* command) { return command->get_name() == word; });
 }

@@ -47,8 +47,9 @@ void addOptions(CLI::App& command, SquareOptions& o)
     addChoice<Density>(command, "--density", {{"curvature", Density::Curvature}, {"even", Density::Even}},
                        o.unfold.density, "samples: closer where the surface bends (curvature), or even");
     command
-        .add_option("--extrema", o.unfold.extrema,
-                    "extend the cut to the first N tips, whether that helps or not (default: as many as help)")
+        .add_option(
+            "--extrema", o.unfold.extrema,
+            "extend the cut to the first N tips, whether that helps or not (default: as many as help)")
         ->check(CLI::NonNegativeNumber);
 }
 

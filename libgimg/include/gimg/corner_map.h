@@ -47,14 +47,14 @@ struct Checkerboard
     /// Colours of the two kinds of field, a pair for each part of the surface, in turn from the first if
     /// there are more parts; no pair: sand and white.
     std::vector<std::array<Color, 2>> colors = {};
-    std::vector<int> part = {};  ///< per face; empty: all in part 0
+    std::vector<int> part = {};   ///< per face; empty: all in part 0
     std::vector<Vec3> marks = {}; ///< points of space to mark with red dots
-    double markRadius = 0;       ///< of a dot, as a ball in space
+    double markRadius = 0;        ///< of a dot, as a ball in space
 };
 
 /// The colour of a point of the surface, as RenderOptions::color takes it.
 /// @param map  kept as a copy, as is `board`
-std::function<Color(int face, const Vec3& barycentric, const Vec3& point)> checkerboardColor(
-    CornerMap map, Checkerboard board);
+std::function<Color(int face, const Vec3& barycentric, const Vec3& point)>
+checkerboardColor(CornerMap map, Checkerboard board);
 
 } // namespace gimg
