@@ -15,6 +15,11 @@ struct Command
     std::function<int()> run;
 };
 
+Command addHolomorphic(CLI::App& app);
+Command addHomology(CLI::App& app);
+Command addPeriods(CLI::App& app);
+Command addSphere(CLI::App& app);
 Command addSquare(CLI::App& app);
+Command addUv(CLI::App& app);
 
 } // namespace gimg::gimparam

@@ -33,7 +33,8 @@ int main(int argc, char** argv)
                "Exit codes: 0 done, 1 input refused, 2 usage, 3 target not reachable.");
     app.set_version_flag("--version", GIMG_VERSION);
     app.require_subcommand(1);
-    const std::vector<Command> commands = {addSquare(app)};
+    const std::vector<Command> commands = {addSphere(app),  addHomology(app), addHolomorphic(app),
+                                           addPeriods(app), addUv(app),       addSquare(app)};
 
     std::vector<char*> words(argv, argv + argc);
     std::string square = "square";

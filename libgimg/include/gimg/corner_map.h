@@ -40,6 +40,13 @@ Status writeCornerMap(const Mesh& mesh, const CornerMap& map, const std::string&
 /// Errors: FormatUnknown for other extensions, BadArgument for indices out of range, FileNotWritable.
 Status writeLines(const Mesh& mesh, std::span<const std::vector<int>> lines, const std::string& path);
 
+/// Writes a surface with complex 1-forms to .ply: binary, little-endian, float64. Form i is the face property
+/// `form_i`, a list of six numbers: real and imaginary part of the integral along the face's first edge, from
+/// its first to its second vertex, then along the second and third.
+/// @param forms  a number for each halfedge 3 f + k (see Halfedges)
+/// Errors: FormatUnknown for other extensions, BadArgument for forms of another size, FileNotWritable.
+Status writeForms(const Mesh& mesh, std::span<const Eigen::VectorXcd> forms, const std::string& path);
+
 /// What a checkerboard looks like on a surface.
 struct Checkerboard
 {
