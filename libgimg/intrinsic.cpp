@@ -31,7 +31,12 @@ Vec2 apex(double base, double left, double right)
 
 Result<IntrinsicTriangulation> IntrinsicTriangulation::of(const Mesh& mesh)
 {
-    IntrinsicTriangulation triangulation(mesh);
+    return of(polyhedralSurface(mesh));
+}
+
+Result<IntrinsicTriangulation> IntrinsicTriangulation::of(const PolyhedralSurface& surface)
+{
+    IntrinsicTriangulation triangulation(surface);
     constexpr double kSmallest = 1e-70, kLargest = 1e70; // products of four stay in range
     double longest = 0;
     for (double length : triangulation.length_) {
@@ -43,15 +48,15 @@ Result<IntrinsicTriangulation> IntrinsicTriangulation::of(const Mesh& mesh)
     return triangulation;
 }
 
-IntrinsicTriangulation::IntrinsicTriangulation(const Mesh& mesh) : vertexCount_(mesh.vertexCount())
+IntrinsicTriangulation::IntrinsicTriangulation(const PolyhedralSurface& surface)
+    : vertexCount_(surface.vertexCount), length_(surface.lengths)
 {
-    const Halfedges he(mesh.faces, mesh.vertexCount());
+    const Halfedges he(surface.faces, surface.vertexCount);
     for (int h = 0; h < he.count(); ++h) {
         tail_.push_back(he.tail(h));
         next_.push_back(Halfedges::next(h));
         twin_.push_back(he.twin(h));
         face_.push_back(Halfedges::face(h));
-        length_.push_back((mesh.positions[he.head(h)] - mesh.positions[he.tail(h)]).norm());
     }
 }
 

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "gimg/mesh.h"
+#include "gimg/polyhedral_surface.h"
 #include "gimg/result.h"
 
 #include <Eigen/SparseCore>
@@ -33,6 +34,7 @@ public:
     /// that makes it as much. Source: Sharp, Crane 2020, "A Laplacian for nonmanifold triangle meshes".
     /// Errors: EmptyMesh if no edge is longer than 1e-70; NotFinite if one is longer than 1e70 or no number.
     static Result<IntrinsicTriangulation> of(const Mesh& mesh);
+    static Result<IntrinsicTriangulation> of(const PolyhedralSurface& surface);
 
     /// Flips interior edges with a negative weight until there is none. The result does not depend on the
     /// order of flips, but for edges of weight 0; the order is the same in every run.
@@ -81,7 +83,7 @@ private:
         int halfedge, first, second;
     };
 
-    explicit IntrinsicTriangulation(const Mesh& mesh);
+    explicit IntrinsicTriangulation(const PolyhedralSurface& surface);
     void lengthen();
     double weightSum(int h, double& rounding) const;
     bool isNegative(int h) const { return !onBoundary(h) && weight(h) < 0; }

@@ -21,11 +21,12 @@ struct PolyhedralSurface
 /// The surface that the triangles of a mesh make.
 PolyhedralSurface polyhedralSurface(const Mesh& mesh);
 
-/// What type a closed surface has, after a look at all that could be wrong with it.
-/// Errors: EmptyMesh; BadArgument for an index out of range, a vertex twice in a face, lengths that are not
-/// one a halfedge or differ on twins, or faces that are orientable but not oriented alike; NotFinite;
-/// NonManifoldEdge; NotOrientable; NotClosed; NonManifoldVertex; SeveralComponents; ZeroAreaFace where the
-/// height of a triangle is below 1e-12 of its longest side, or the triangle inequality is broken.
+/// What type a closed surface has, after a look at all that could be wrong with it. Vertices that no face has
+/// do not count.
+/// Errors: EmptyMesh; BadArgument for an index out of range, lengths that are not one a halfedge or differ on
+/// twins, or faces that are orientable but not oriented alike; NotFinite; NonManifoldEdge; NotOrientable;
+/// NotClosed; NonManifoldVertex; SeveralComponents; ZeroAreaFace where a face has a vertex twice, or a side as
+/// long as the other two together up to rounding.
 Result<Topology> closedTopology(const PolyhedralSurface& surface);
 
 } // namespace gimg
