@@ -13,15 +13,9 @@ namespace gimg {
 namespace {
 
 // Two triangles whose common edge has two images.
-Mesh twoTriangles()
-{
-    return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
-}
+Mesh twoTriangles() { return {{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}}; }
 
-CornerMap twoIslands()
-{
-    return {{{0, 0}, {1, 0}, {1, 1}, {5, 0}, {6, 1}, {5, 1}}, {{0, 1, 2}, {3, 4, 5}}};
-}
+CornerMap twoIslands() { return {{{0, 0}, {1, 0}, {1, 1}, {5, 0}, {6, 1}, {5, 1}}, {{0, 1, 2}, {3, 4, 5}}}; }
 
 class CornerMapIo : public test::TemporaryFiles
 {
@@ -84,7 +78,7 @@ TEST_F(CornerMapIo, LinesKeepTheirVerticesOnly)
 TEST_F(CornerMapIo, FormsAreSixNumbersAFace)
 {
     Eigen::VectorXcd form(6);
-    for (int h = 0; h < 6; ++h) form[h] = {h + 0.5, -h};
+    for (int h = 0; h < 6; ++h) form[h] = {h + 0.5, -1.0 * h};
     const std::vector<Eigen::VectorXcd> forms = {form, 2 * form};
     ASSERT_TRUE(writeForms(twoTriangles(), forms, path("forms.ply")).ok());
     const std::string bytes = read(path("forms.ply"));

@@ -63,11 +63,13 @@ TEST(DoubleCover, HalvesEdgesThatJoinBoundaryVertices)
 {
     // Fans of 4 to 6 triangles without a vertex inside: 1 to 3 chords, and triangles with one, two or three.
     const Mesh square{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}}};
-    const Mesh fan{{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0}}, {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}};
+    const Mesh fan{{{0, 0, 0}, {2, 0, 0}, {2, 1, 0}, {1, 2, 0}, {0, 1, 0}},
+                   {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}}};
     const Mesh star{{{0, 0, 0}, {1, 0, 0}, {2, 0, 0}, {1.5, 1, 0}, {1, 2, 0}, {0.5, 1, 0}},
                     {{0, 1, 5}, {1, 2, 3}, {5, 3, 4}, {1, 3, 5}}};
     const Mesh strip = shapes::cylinder(1, 1, 7, 1);
-    const std::vector<std::pair<const Mesh*, int>> chords = {{&square, 1}, {&fan, 2}, {&star, 3}, {&strip, 14}};
+    const std::vector<std::pair<const Mesh*, int>> chords = {
+        {&square, 1}, {&fan, 2}, {&star, 3}, {&strip, 14}};
     for (const auto& [mesh, count] : chords) {
         const DoubleCover cover = covering(*mesh);
         EXPECT_EQ(cover.mesh.vertexCount(), mesh->vertexCount() + 2 * count);
