@@ -9,12 +9,12 @@
 
 namespace gimg {
 
-/// Stereographic projection of the unit sphere from its north pole (0, 0, 1) to the plane z = 0:
-/// (x + i y) / (1 - z). The north pole itself becomes infinite.
+/// Stereographic projection of the unit sphere from its south pole (0, 0, -1): (x + i y) / (1 + z). Seen from
+/// outside, it keeps orientation; the south pole becomes infinite. Source: thesis, equation 64.
 std::complex<double> stereographic(const Vec3& onSphere);
 
-/// The point of the unit sphere over a point of the plane; the inverse of stereographic().
-Vec3 fromPlane(const std::complex<double>& z);
+/// The point of the unit sphere that stereographic() takes to z.
+Vec3 ontoSphere(const std::complex<double>& z);
 
 /// A conformal, orientation-preserving map of the sphere onto itself: z -> (a z + b) / (c z + d) with
 /// a d - b c = 1 in the plane of stereographic().

@@ -13,6 +13,7 @@ namespace gimg {
 struct SphereMapOptions
 {
     bool centre = true; ///< bring the mass centre to the sphere's by a Moebius map
+    int smoothing = 10; ///< times that vertices are moved one by one for the shapes of the triangles around them
 };
 
 /// A surface on the unit sphere.
@@ -38,8 +39,11 @@ struct SphereMap
 Result<SphereMap> sphereMap(const Mesh& mesh, const SphereMapOptions& options = {},
                             const Progress& progress = {});
 
-/// Triangles of which the sphere is on the wrong side: those whose corners a, b, c do not have det(a, b, c)
-/// > 0. Exact: rounding plays no part.
+/// The sign of det(a, b, c): 1 if the triangle runs counter-clockwise seen from outside the sphere, 0 if its
+/// corners lie on a great circle. Exact (unless products of three coordinates underflow).
+int sphereOrientation(const Vec3& a, const Vec3& b, const Vec3& c);
+
+/// How many triangles have an orientation on the sphere other than 1.
 int flippedOnSphere(const std::vector<Triangle>& faces, const std::vector<Vec3>& position);
 
 } // namespace gimg
