@@ -12,6 +12,7 @@ namespace {
 
 constexpr double kCapacityUnits = 1099511627776.0; // 2^40 for the sum of all lengths
 constexpr int kNone = -1;
+constexpr double kRounding = 1e-12; // by which a corner may lie outside of [0,1)^2
 
 std::vector<CapacityEdge> dualEdges(const Halfedges& he, const ComplexOneForm& form)
 {
@@ -191,7 +192,7 @@ Result<CornerMap> modularCoordinates(const Mesh& mesh, const ComplexOneForm& for
             }
     }
     for (size_t f = 0; f < mesh.faces.size(); ++f) {
-        const Vec2 whole = map.uv[3 * f].array().floor();
+        const Vec2 whole = (map.uv[3 * f].array() + kRounding).floor();
         for (size_t k = 0; k < 3; ++k) map.uv[3 * f + k] -= whole;
     }
     return map;

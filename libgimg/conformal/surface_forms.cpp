@@ -5,7 +5,7 @@
 namespace gimg {
 namespace {
 
-constexpr double kIndependent = 1e-6; // of a form's norm must be left beside those chosen before
+constexpr double kIndependent = 1e-6; // of a form's energy must be left beside those chosen before
 
 // Real inner products of forms, as measured on the triangles: of Re a and Re b, which for holomorphic forms
 // is half of the whole.
@@ -22,10 +22,10 @@ Eigen::MatrixXd realGram(const PolyhedralSurface& surface, const std::vector<Com
     return gram;
 }
 
-// Picks independent forms, the one with the largest part beside those chosen before first.
-std::vector<size_t> independent(Eigen::MatrixXd gram, size_t count)
+// Picks independent forms, always the one that has the largest part beside those chosen before. Its share of
+// `norms` counts: what is left of a form with almost no symmetric part is rounding.
+std::vector<size_t> independent(Eigen::MatrixXd gram, const Eigen::VectorXd& norms, size_t count)
 {
-    const Eigen::VectorXd norms = gram.diagonal();
     std::vector<size_t> chosen;
     while (chosen.size() < count) {
         Eigen::Index best = 0;
@@ -47,14 +47,18 @@ Result<SurfaceForms> formsOfBounded(const Mesh& mesh, const Topology& type, cons
     Result<ConformalStructure> structure = conformalStructure(cover->mesh, progress);
     if (!structure) return structure.error();
 
+    const PolyhedralSurface surface = polyhedralSurface(cover->mesh);
     std::vector<ComplexOneForm> candidates;
+    Eigen::VectorXd norms(2 * genus);
     const std::complex<double> i(0, 1);
     for (const ComplexOneForm& form : structure->holomorphic) {
+        const double energy = starWedge(surface, form.real(), form.real());
+        norms.segment<2>(static_cast<Eigen::Index>(candidates.size())).setConstant(energy);
         candidates.push_back(symmetricPart(*cover, form));
         candidates.push_back(symmetricPart(*cover, i * form));
     }
     const std::vector<size_t> chosen =
-        independent(realGram(polyhedralSurface(cover->mesh), candidates), static_cast<size_t>(genus));
+        independent(realGram(surface, candidates), norms, static_cast<size_t>(genus));
     if (chosen.size() != static_cast<size_t>(genus))
         return Error{ErrorKind::SolverFailure, "found " + std::to_string(chosen.size()) +
                                                    " symmetric forms of " + std::to_string(genus)};

@@ -66,7 +66,7 @@ TEST(BranchPoints, FindsTheOrderAndThePlaceOfAZero)
 TEST(BranchPoints, AreTwoGMinusTwoForEveryForm)
 {
     for (int genus = 1; genus <= 7; ++genus) {
-        const Mesh mesh = shapes::surfaceOfGenus(genus, 0, 6);
+        const Mesh mesh = shapes::surfaceOfGenus(genus, 0, 5);
         const SurfaceForms forms = formsOf(mesh);
         ASSERT_EQ(forms.basis.size(), static_cast<size_t>(genus));
         const UniformForm even = *mostUniformForm(mesh, forms.basis, false);

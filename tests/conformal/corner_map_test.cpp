@@ -109,7 +109,7 @@ TEST(Checkerboard, FieldsPartsAndMarks)
     EXPECT_EQ(at(0, 0.3, 0.1), light);
     EXPECT_EQ(at(0, 0.3, 0.26), dark);
     EXPECT_EQ(color(1, {0.9, 0.04, 0.06}, {0, 0, 0}), blue);  // (5.04, 0.1)
-    EXPECT_EQ(color(1, {0.6, 0.35, 0.05}, {0, 0, 0}), white); // (5.35, 0.4): fields 21 and 1
+    EXPECT_EQ(color(1, {0.65, 0.2, 0.15}, {0, 0, 0}), white); // (5.2, 0.35): fields 20 and 1
     const Color mark = at(0, 0.2, 0.1), near = color(0, {0.8, 0.1, 0.1}, {9, 9, 9.4});
     EXPECT_NE(mark, near);
     EXPECT_EQ(color(0, {0.8, 0.1, 0.1}, {9, 9, 9.6}), dark);

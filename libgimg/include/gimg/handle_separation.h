@@ -47,7 +47,7 @@ Result<HandleSeparation> separateHandles(const Mesh& mesh, const ComplexOneForm&
 
 /// The place of every corner in the parallelogram of its handle: coordinates (s, t) stand for s periodA + t
 /// periodB; across an edge inside a handle they change by integers, and the first corner of every face lies
-/// in [0,1)^2. A texture that repeats with the unit square has no seam but the separators.
+/// in [0,1)^2 (but for 1e-12). A texture that repeats with the unit square has no seam but the separators.
 /// @param form  the same as for separateHandles
 /// Errors: BadArgument where a parallelogram has no area.
 Result<CornerMap> modularCoordinates(const Mesh& mesh, const ComplexOneForm& form,
