@@ -3,6 +3,7 @@
 
 #include <Eigen/Geometry>
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 #include <numeric>
@@ -11,7 +12,8 @@
 namespace gimg {
 namespace {
 
-constexpr double kNudge = 1e-9; // of the form's size around a vertex
+constexpr double kNudge = 1e-9;     // of the form's size around a vertex
+constexpr double kResolved = 1e-13; // of the form's largest value: no less can be told from rounding
 
 // Fractions of the golden ratio: spread over [-1, 1), and no two alike.
 double scattered(int v, double start)
@@ -41,9 +43,9 @@ double dot(std::complex<double> a, std::complex<double> b) { return (std::conj(a
 
 struct Turns
 {
-    std::vector<double> angle;  // per vertex: of all corners, those of flipped faces negative
-    std::vector<double> excess; // per vertex: of all corners as positive, less a full turn, in full turns
-    std::vector<int> flipped;   // one halfedge of each flipped face
+    std::vector<double> angle;  // per vertex: of the corners of faces that are not in `unclear`
+    std::vector<double> excess; // per vertex: of all corners, less a full turn, in full turns
+    std::vector<int> unclear; // one halfedge of each face that is flipped, or so small that rounding decides
 };
 
 Turns turnsOf(const IntrinsicTriangulation& t, const ComplexOneForm& form)
@@ -51,25 +53,26 @@ Turns turnsOf(const IntrinsicTriangulation& t, const ComplexOneForm& form)
     Turns turns;
     turns.angle.assign(static_cast<size_t>(t.vertexCount()), 0.0);
     turns.excess.assign(static_cast<size_t>(t.vertexCount()), -1.0);
+    const double leastHeight = kResolved * form.cwiseAbs().maxCoeff();
     std::vector<bool> seen(static_cast<size_t>(t.halfedgeCount()), false);
     for (int h = 0; h < t.halfedgeCount(); ++h) {
         if (seen[h]) continue;
-        // One sign for the whole face, from its first corner.
-        const double sign = cross(form[h], form[t.next(h)]) > 0 ? 1 : -1;
-        if (sign < 0) turns.flipped.push_back(h);
-        int corner = h;
-        for (int k = 0; k < 3; ++k, corner = t.next(corner)) {
+        const int next = t.next(h), prev = t.prev(h);
+        const double longest = std::max({std::abs(form[h]), std::abs(form[next]), std::abs(form[prev])});
+        const bool clear = cross(form[h], form[next]) > leastHeight * longest;
+        if (!clear) turns.unclear.push_back(h);
+        for (int corner : {h, next, prev}) {
             seen[corner] = true;
             const std::complex<double> out = form[corner], in = -form[t.prev(corner)];
             const double angle = std::atan2(std::abs(cross(out, in)), dot(out, in));
-            turns.angle[t.tail(corner)] += sign * angle;
+            if (clear) turns.angle[t.tail(corner)] += angle;
             turns.excess[t.tail(corner)] += angle / (2 * std::numbers::pi);
         }
     }
     return turns;
 }
 
-// Vertices joined where a flipped face has them.
+// Vertices joined where an unclear face has them.
 class Patches
 {
 public:
@@ -92,7 +95,7 @@ private:
     std::vector<int> parent_;
 };
 
-/// Vertices of nonzero index together: one with a cone, or those of a patch of flipped triangles.
+/// Vertices of nonzero index together: one with a cone, or those of a patch of unclear faces.
 struct Place
 {
     int index = 0;
@@ -116,12 +119,14 @@ BranchPoint pointAt(const Mesh& mesh, const Turns& turns, const Place& place)
 std::vector<Place> placesOf(const Mesh& mesh, const IntrinsicTriangulation& t, const Turns& turns)
 {
     Patches patches(mesh.vertexCount());
-    for (int h : turns.flipped) {
+    for (int h : turns.unclear) {
         patches.join(t.tail(h), t.head(h));
         patches.join(t.tail(h), t.tail(t.prev(h)));
     }
     std::vector<double> index(mesh.positions.size(), 0.0);
-    for (int h : turns.flipped) index[patches.of(t.tail(h))] += 1;
+    // Around a patch the turns of the clear faces count. Inside, it does not matter how a face lies: its
+    // angles, half a turn, if it is clear, or those of a flipped one, negative, and its own index of 1.
+    for (int h : turns.unclear) index[patches.of(t.tail(h))] += 0.5;
     std::vector<bool> used(mesh.positions.size(), false);
     for (const Triangle& f : mesh.faces)
         for (int v : f) used[v] = true;

@@ -68,21 +68,20 @@ struct BranchPoint
     int multiplicity = 0; ///< > 0
 };
 
-/// All zeros of a form, found by counting turns, which has no tolerance to choose.
+/// All zeros of a form, found by counting turns.
 struct BranchPoints
 {
     std::vector<BranchPoint> points;
-    /// 2 g - 2 for a closed surface, whatever the form: the sum of multiplicities less that of `negative`.
-    int total = 0;
-    /// Places with a negative index, which no harmonic form has; where a form is so small that rounding
-    /// decides (far out on a limb), they come in pairs with points that are none.
-    int negative = 0;
+    int total = 0;    ///< sum of the indices of all places: 2 g - 2
+    int negative = 0; ///< places of negative index, which no harmonic form has: 0
 };
 
 /// The triangles of a closed form lie in the plane. Around each vertex their angles, negative in flipped
 /// triangles, add up to 2 pi (1 + k) with an integer k; the indices k of vertices and 1 of flipped triangles
 /// add up to 2 g - 2 (see docs/global.md). Counted on the intrinsic Delaunay triangulation, where a harmonic
-/// form has no places of negative index; a patch of flipped triangles is one place with all its vertices.
+/// form has no places of negative index. A patch of flipped triangles is one place with all its vertices; so
+/// is one where the form is below 1e-13 of its largest value, as it is far out on a limb, and its index is
+/// that of a walk around it.
 /// @param mesh  closed, connected, manifold, oriented
 /// @param form  closed, on the mesh's halfedges
 /// Errors: those of IntrinsicTriangulation::of; BadArgument for a form of another size.
