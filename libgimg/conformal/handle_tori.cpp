@@ -46,12 +46,9 @@ private:
 class HandleFinder
 {
 public:
-    HandleFinder(const Mesh& mesh, const Halfedges& he)
-        : mesh_(mesh), he_(he), free_(mesh.positions.size(), true)
+    HandleFinder(const Mesh& mesh, const Halfedges& he, const Eigen::VectorXd& lengths)
+        : mesh_(mesh), he_(he), length_(lengths), free_(mesh.positions.size(), true)
     {
-        length_.resize(static_cast<size_t>(he.count()));
-        for (int h = 0; h < he.count(); ++h)
-            length_[h] = (mesh.positions[he.head(h)] - mesh.positions[he.tail(h)]).norm();
         for (int v = 0; v < mesh.vertexCount(); ++v) free_[v] = he.outgoing(v) >= 0;
     }
 
@@ -280,15 +277,16 @@ private:
 
     const Mesh& mesh_;
     const Halfedges& he_;
+    const Eigen::VectorXd& length_;
     std::vector<bool> free_; // per vertex: no face of a handle found before touches it
-    std::vector<double> length_;
 };
 
 } // namespace
 
-Result<std::vector<HandleTorus>> handleTori(const Mesh& mesh, const Halfedges& halfedges, int genus)
+Result<std::vector<HandleTorus>> handleTori(const Mesh& mesh, const Halfedges& halfedges,
+                                            const Eigen::VectorXd& lengths, int genus)
 {
-    HandleFinder finder(mesh, halfedges);
+    HandleFinder finder(mesh, halfedges, lengths);
     std::vector<HandleTorus> tori;
     for (int k = 0; k < genus; ++k) {
         Result<HandleTorus> torus = finder.next();
