@@ -121,7 +121,7 @@ DelaunayReport IntrinsicTriangulation::makeDelaunay()
     constexpr size_t kMostFlips = 200; // an edge; a few tenths are usual
     DelaunayReport report;
     report.negativeBefore = negativeEdges();
-    const size_t before = flips_.size(), most = before + kMostFlips * length_.size();
+    const size_t before = flips_, most = before + kMostFlips * length_.size();
     std::vector<int> waiting;
     std::vector<bool> isWaiting(length_.size(), false);
     const auto wait = [&](int h) {
@@ -131,7 +131,7 @@ DelaunayReport IntrinsicTriangulation::makeDelaunay()
         isWaiting[edge] = true;
     };
     for (int h = halfedgeCount() - 1; h >= 0; --h) wait(h);
-    while (!waiting.empty() && flips_.size() < most) {
+    while (!waiting.empty() && flips_ < most) {
         const int h = waiting.back();
         waiting.pop_back();
         isWaiting[h] = false;
@@ -140,7 +140,7 @@ DelaunayReport IntrinsicTriangulation::makeDelaunay()
         flip(h);
         for (int side : {h, twin_[h]}) wait(next(side)), wait(prev(side));
     }
-    report.flips = static_cast<int>(flips_.size() - before);
+    report.flips = static_cast<int>(flips_ - before);
     report.negativeAfter = negativeEdges();
     return report;
 }
@@ -164,7 +164,43 @@ void IntrinsicTriangulation::flip(int h)
     next_[t] = db, next_[db] = bc, next_[bc] = t;
     face_[ad] = face_[h];
     face_[bc] = face_[t];
-    flips_.push_back({h, db, bc});
+    steps_.push_back({h, t, db, bc, -1});
+    ++flips_;
+}
+
+// The triangle u v w of h = uv becomes u m w and m v w. Returns the first of three new halfedges mw, mv, wm.
+int IntrinsicTriangulation::halve(int h, int middle)
+{
+    const int vw = next(h), wu = prev(h), added = halfedgeCount();
+    const double a = length_[h], b = length_[vw], c = length_[wu];
+    const double median = 0.5 * std::sqrt(std::max(2 * b * b + (2 * c * c - a * a), (b - c) * (b - c)));
+    const int newFace = faceCount();
+    tail_.insert(tail_.end(), {middle, middle, tail_[wu]});
+    next_.insert(next_.end(), {wu, vw, added + 1});
+    twin_.insert(twin_.end(), {added + 2, -1, added});
+    face_.insert(face_.end(), {face_[h], newFace, newFace});
+    length_.insert(length_.end(), {median, 0.5 * a, median});
+    next_[h] = added;
+    next_[vw] = added + 2;
+    face_[vw] = newFace;
+    return added;
+}
+
+int IntrinsicTriangulation::split(int h)
+{
+    const int t = twin_[h];
+    if (t >= 0 && face_[h] == face_[t]) return -1;
+    const int middle = vertexCount_++;
+    steps_.push_back({h, t, prev(h), t < 0 ? -1 : prev(t), halfedgeCount()});
+    const int left = halve(h, middle);
+    if (t >= 0) {
+        const int right = halve(t, middle);
+        twin_[h] = right + 1, twin_[right + 1] = h;
+        twin_[t] = left + 1, twin_[left + 1] = t;
+        length_[t] *= 0.5;
+    }
+    length_[h] *= 0.5;
+    return middle;
 }
 
 std::vector<Triangle> IntrinsicTriangulation::faces() const
@@ -200,9 +236,23 @@ Eigen::SparseMatrix<double> IntrinsicTriangulation::cotangentLaplacian() const
 
 std::vector<double> IntrinsicTriangulation::carried(std::vector<double> closedForm) const
 {
-    for (const Flip& flip : flips_) {
-        closedForm[flip.halfedge] = closedForm[flip.first] + closedForm[flip.second];
-        closedForm[twin_[flip.halfedge]] = -closedForm[flip.halfedge];
+    std::vector<double>& form = closedForm;
+    form.resize(tail_.size());
+    for (const Step& step : steps_) {
+        const auto& [h, t, first, second, added] = step;
+        if (added < 0) {
+            form[h] = form[first] + form[second];
+            form[t] = -form[h];
+            continue;
+        }
+        form[h] *= 0.5;
+        form[added + 1] = form[h];
+        form[added] = -form[h] - form[first];
+        form[added + 2] = -form[added];
+        if (t < 0) continue;
+        form[t] = form[added + 4] = -form[h];
+        form[added + 3] = -form[t] - form[second];
+        form[added + 5] = -form[added + 3];
     }
     return closedForm;
 }

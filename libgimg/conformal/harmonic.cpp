@@ -21,13 +21,15 @@ struct Unknowns
     int count = 0;
 };
 
-Unknowns unknownsOf(const Halfedges& he, int vertices)
+Unknowns unknownsOf(const IntrinsicTriangulation& triangulation)
 {
     Unknowns unknowns;
-    unknowns.row.assign(static_cast<size_t>(vertices), -1);
+    unknowns.row.assign(static_cast<size_t>(triangulation.vertexCount()), -1);
+    std::vector<bool> hasFace(unknowns.row.size(), false);
+    for (int h = 0; h < triangulation.halfedgeCount(); ++h) hasFace[triangulation.tail(h)] = true;
     bool held = false;
-    for (int v = 0; v < vertices; ++v) {
-        if (he.outgoing(v) < 0) continue;
+    for (size_t v = 0; v < hasFace.size(); ++v) {
+        if (!hasFace[v]) continue;
         if (held) unknowns.row[v] = unknowns.count++;
         held = true;
     }
@@ -77,14 +79,14 @@ Eigen::VectorXd outflow(const IntrinsicTriangulation& triangulation, const Eigen
 struct HarmonicSolver::Parts
 {
     Topology topology;
-    Halfedges halfedges;
+    Halfedges halfedges; ///< of the surface
     IntrinsicTriangulation triangulation;
-    Eigen::VectorXd weights; // per halfedge
-    Unknowns unknowns;
-    mutable Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> factorization;
+    Eigen::VectorXd weights{}; ///< per halfedge of the triangulation
+    Unknowns unknowns{};
+    mutable Eigen::CholmodSupernodalLLT<SparseMatrix, Eigen::Lower> factorization{};
 
-    Eigen::MatrixXd flows(std::span<const OneForm> forms) const;
-    bool solve(const Eigen::MatrixXd& right, Eigen::MatrixXd& solution) const;
+    Status factor();
+    Result<Eigen::MatrixXd> potentials(std::span<const OneForm> onTriangulation) const;
 };
 
 HarmonicSolver::HarmonicSolver(std::unique_ptr<Parts> parts) : parts_(std::move(parts)) {}
@@ -101,73 +103,83 @@ Result<HarmonicSolver> HarmonicSolver::of(const PolyhedralSurface& surface)
     if (!closed) return closed.error();
     Result<IntrinsicTriangulation> triangulation = IntrinsicTriangulation::of(surface);
     if (!triangulation) return triangulation.error();
-    if (triangulation->makeDelaunay().negativeAfter > 0)
-        return Error{ErrorKind::SolverFailure, "no Delaunay triangulation was found: triangles too degenerate"};
-    Eigen::VectorXd weights = weightsOf(*triangulation);
-    Unknowns unknowns = unknownsOf(closed->halfedges, surface.vertexCount);
-    std::unique_ptr<Parts> parts(new Parts{closed->topology, std::move(closed->halfedges),
-                                           std::move(*triangulation), std::move(weights),
-                                           std::move(unknowns), {}});
-    const OneSolverThread oneThread;
-    parts->factorization.cholmod().print = 0; // a failed factorization is handled, not reported
-    parts->factorization.compute(lowerTriangle(parts->triangulation, parts->weights, parts->unknowns));
-    if (parts->factorization.info() != Eigen::Success)
-        return Error{ErrorKind::SolverFailure, "the Laplacian could not be factored"};
+    std::unique_ptr<Parts> parts(
+        new Parts{closed->topology, std::move(closed->halfedges), std::move(*triangulation)});
+    const Status factored = parts->factor();
+    if (!factored) return factored.error();
     return HarmonicSolver(std::move(parts));
 }
 
-Eigen::MatrixXd HarmonicSolver::Parts::flows(std::span<const OneForm> forms) const
+Status HarmonicSolver::Parts::factor()
 {
-    Eigen::MatrixXd right(unknowns.count, static_cast<Eigen::Index>(forms.size()));
-    for (Eigen::Index j = 0; j < right.cols(); ++j) {
-        const Eigen::VectorXd flow = outflow(triangulation, weights, carried(triangulation, forms[j]));
-        for (int v = 0; v < flow.size(); ++v)
+    if (triangulation.makeDelaunay().negativeAfter > 0)
+        return Error{ErrorKind::SolverFailure,
+                     "no Delaunay triangulation was found: triangles too degenerate"};
+    weights = weightsOf(triangulation);
+    unknowns = unknownsOf(triangulation);
+    const OneSolverThread oneThread;
+    factorization.cholmod().print = 0; // a failed factorization is handled, not reported
+    factorization.compute(lowerTriangle(triangulation, weights, unknowns));
+    if (factorization.info() != Eigen::Success)
+        return Error{ErrorKind::SolverFailure, "the Laplacian could not be factored"};
+    return Done{};
+}
+
+// Per vertex and form: the function whose difference takes the flow out of each vertex back.
+Result<Eigen::MatrixXd> HarmonicSolver::Parts::potentials(std::span<const OneForm> onTriangulation) const
+{
+    const Eigen::Index forms = static_cast<Eigen::Index>(onTriangulation.size());
+    const int vertices = triangulation.vertexCount();
+    Eigen::MatrixXd right(unknowns.count, forms);
+    for (Eigen::Index j = 0; j < forms; ++j) {
+        const Eigen::VectorXd flow = outflow(triangulation, weights, onTriangulation[j]);
+        for (int v = 0; v < vertices; ++v)
             if (unknowns.row[v] >= 0) right(unknowns.row[v], j) = flow[v];
     }
-    return right;
-}
-
-bool HarmonicSolver::Parts::solve(const Eigen::MatrixXd& right, Eigen::MatrixXd& solution) const
-{
     const OneSolverThread oneThread;
-    solution = factorization.solve(right);
-    return factorization.info() == Eigen::Success && solution.allFinite();
+    const Eigen::MatrixXd solution = factorization.solve(right);
+    if (factorization.info() != Eigen::Success || !solution.allFinite())
+        return Error{ErrorKind::SolverFailure, "a harmonic form has no finite solution"};
+    Eigen::MatrixXd f = Eigen::MatrixXd::Zero(vertices, forms);
+    for (int v = 0; v < vertices; ++v)
+        if (unknowns.row[v] >= 0) f.row(v) = solution.row(unknowns.row[v]);
+    return f;
 }
 
-// The flow out of each vertex goes back by df. The second round takes away what rounding left of the first.
-Result<std::vector<OneForm>> HarmonicSolver::harmonic(std::span<const OneForm> forms) const
+// The second round takes away what rounding left of the first.
+Result<HarmonicForms> HarmonicSolver::harmonic(std::span<const OneForm> forms) const
 {
     const Parts& parts = *parts_;
-    std::vector<OneForm> result(forms.begin(), forms.end());
+    HarmonicForms result;
+    result.onSurface.assign(forms.begin(), forms.end());
+    for (const OneForm& form : forms) result.onTriangulation.push_back(carried(parts.triangulation, form));
     for (int round = 0; round < 2; ++round) {
-        Eigen::MatrixXd solution;
-        if (!parts.solve(parts.flows(result), solution))
-            return Error{ErrorKind::SolverFailure, "a harmonic form has no finite solution"};
-        Eigen::VectorXd f = Eigen::VectorXd::Zero(parts.triangulation.vertexCount());
-        for (Eigen::Index j = 0; j < solution.cols(); ++j) {
-            for (int v = 0; v < f.size(); ++v)
-                if (parts.unknowns.row[v] >= 0) f[v] = solution(parts.unknowns.row[v], j);
-            result[j] += exteriorDerivative(parts.halfedges, f);
+        const Result<Eigen::MatrixXd> f = parts.potentials(result.onTriangulation);
+        if (!f) return f.error();
+        for (size_t j = 0; j < forms.size(); ++j) {
+            const Eigen::VectorXd own = f->col(static_cast<Eigen::Index>(j));
+            result.onSurface[j] += exteriorDerivative(parts.halfedges, own);
+            OneForm& there = result.onTriangulation[j];
+            for (int h = 0; h < there.size(); ++h)
+                there[h] += own[parts.triangulation.head(h)] - own[parts.triangulation.tail(h)];
         }
     }
     return result;
 }
 
-Eigen::MatrixXd HarmonicSolver::energies(std::span<const OneForm> forms) const
+Eigen::MatrixXd HarmonicSolver::energies(std::span<const OneForm> onTriangulation) const
 {
-    const Eigen::Index n = static_cast<Eigen::Index>(forms.size());
-    std::vector<OneForm> there;
-    for (const OneForm& form : forms) there.push_back(carried(parts_->triangulation, form));
+    const Eigen::Index n = static_cast<Eigen::Index>(onTriangulation.size());
     Eigen::MatrixXd energies = Eigen::MatrixXd::Zero(n, n);
     // A slice of edges at a time, so that products are those of small matrices.
     constexpr int kSlice = 512;
     Eigen::MatrixXd slice(kSlice, n);
     const Eigen::VectorXd& weights = parts_->weights;
-    for (int begin = 0, rows = 0; begin < weights.size(); rows = 0) {
-        for (; begin < weights.size() && rows < kSlice; ++begin) {
-            if (begin > parts_->triangulation.twin(begin)) continue;
-            const double root = std::sqrt(std::max(weights[begin], 0.0));
-            for (Eigen::Index j = 0; j < n; ++j) slice(rows, j) = root * there[j][begin];
+    for (int h = 0, rows = 0; h < weights.size(); rows = 0) {
+        for (; h < weights.size() && rows < kSlice; ++h) {
+            if (h > parts_->triangulation.twin(h)) continue;
+            const double root = std::sqrt(std::max(weights[h], 0.0));
+            for (Eigen::Index j = 0; j < n; ++j) slice(rows, j) = root * onTriangulation[j][h];
             ++rows;
         }
         energies.selfadjointView<Eigen::Lower>().rankUpdate(slice.topRows(rows).transpose());
@@ -175,11 +187,52 @@ Eigen::MatrixXd HarmonicSolver::energies(std::span<const OneForm> forms) const
     return energies.selfadjointView<Eigen::Lower>();
 }
 
-double HarmonicSolver::divergence(const OneForm& form) const
+// |*a - b|^2 = |a|^2 + |b|^2 - 2 <*a, b>, and <*a, b> dA = a ^ b.
+Eigen::VectorXd HarmonicSolver::conjugateErrors(const OneForm& a, const OneForm& b) const
 {
-    const OneForm there = carried(parts_->triangulation, form);
-    const double energy = 0.5 * (parts_->weights.array() * there.array().square()).sum();
-    return outflow(parts_->triangulation, parts_->weights, there).cwiseAbs().maxCoeff() / std::sqrt(energy);
+    const IntrinsicTriangulation& triangulation = parts_->triangulation;
+    Eigen::VectorXd errors = Eigen::VectorXd::Zero(triangulation.faceCount());
+    for (int h = 0; h < triangulation.halfedgeCount(); ++h) {
+        const int next = triangulation.next(h);
+        const double wedge = (a[h] * b[next] - a[next] * b[h]) / 6;
+        errors[triangulation.face(h)] +=
+            0.5 * triangulation.cotangent(h) * (a[h] * a[h] + b[h] * b[h]) - 2 * wedge;
+    }
+    return errors.cwiseMax(0);
+}
+
+Status HarmonicSolver::refine(const Eigen::VectorXd& pieces)
+{
+    IntrinsicTriangulation& triangulation = parts_->triangulation;
+    std::vector<double> wanted(pieces.data(), pieces.data() + pieces.size());
+    for (double& count : wanted) count = std::min(count, 16.0);
+    for (int halving = 0; halving < 4; ++halving) {
+        const int before = triangulation.halfedgeCount();
+        std::vector<int> longest(wanted.size(), -1); // halfedge of each face
+        for (int h = 0; h < before; ++h) {
+            int& own = longest[triangulation.face(h)];
+            if (own < 0 || triangulation.length(h) > triangulation.length(own)) own = h;
+        }
+        std::vector<bool> isSplit(static_cast<size_t>(before), false);
+        for (const int h : longest) {
+            const int twin = triangulation.twin(h), face = triangulation.face(h),
+                      other = triangulation.face(twin);
+            if (isSplit[h] || wanted[face] < 2 || triangulation.split(h) < 0) continue;
+            isSplit[h] = isSplit[twin] = true;
+            for (const int halved : {face, other}) { // the new faces come in this order
+                wanted[halved] *= 0.5;
+                wanted.push_back(double(wanted[halved]));
+            }
+        }
+    }
+    return parts_->factor();
+}
+
+double HarmonicSolver::divergence(const OneForm& onTriangulation) const
+{
+    const double energy = 0.5 * (parts_->weights.array() * onTriangulation.array().square()).sum();
+    return outflow(parts_->triangulation, parts_->weights, onTriangulation).cwiseAbs().maxCoeff() /
+           std::sqrt(energy);
 }
 
 std::vector<OneForm> dualBasis(const Halfedges& halfedges, const CanonicalBasis& basis)
@@ -190,7 +243,8 @@ std::vector<OneForm> dualBasis(const Halfedges& halfedges, const CanonicalBasis&
     return forms;
 }
 
-OneForm diffused(const IntrinsicTriangulation& triangulation, const Halfedges& halfedges, OneForm form, int steps)
+OneForm diffused(const IntrinsicTriangulation& triangulation, const Halfedges& halfedges, OneForm form,
+                 int steps)
 {
     const Eigen::VectorXd weights = weightsOf(triangulation);
     Eigen::VectorXd sums = Eigen::VectorXd::Zero(triangulation.vertexCount());

@@ -10,8 +10,8 @@
 namespace gimg {
 
 /// Homology classes of loops as 2g integers: their integrals over closed integer forms that are dual to the
-/// loops of a tree-cotree decomposition. Those forms are 0 on the tree and on most of the cotree, and the other
-/// edges share a few values, of which a table is kept.
+/// loops of a tree-cotree decomposition. Those forms are 0 on the tree and on most of the cotree, and the
+/// other edges share a few values, of which a table is kept.
 class IntegerClasses
 {
 public:
@@ -28,7 +28,7 @@ public:
 
 private:
     int size_;
-    std::vector<int> row_;               // per halfedge: 1 + its row of the table, negative for minus it, or 0
+    std::vector<int> row_; // per halfedge: 1 + its row of the table, negative for minus it, or 0
     std::vector<Eigen::VectorXi> table_; // distinct values
 };
 

@@ -28,9 +28,9 @@ enum Side
     Left = 1
 };
 
-// Where a walk that comes or goes by the edge of h is, seen from the passing. Where that turns back on its edge
-// it has no sides: its shift to the left wraps the vertex one way and that to the right the other way, and
-// their mean is what counts.
+// Where a walk that comes or goes by the edge of h is, seen from the passing. Where that turns back on its
+// edge it has no sides: its shift to the left wraps the vertex one way and that to the right the other way,
+// and their mean is what counts.
 Side sideOf(const Halfedges& he, int h, const Passing& passing)
 {
     if (h == passing.in || h == passing.out || passing.turnsBack()) return Along;
@@ -48,8 +48,8 @@ Passings passingsOf(const Halfedges& he, const Loop& loop)
     return passings;
 }
 
-// The index of Fig. 21, summed over all pairs of visits at common vertices: 2 for a crossing from left to right,
-// 1 for coming from the left or leaving to the right where the walks run together on the other side.
+// The index of Fig. 21, summed over all pairs of visits at common vertices: 2 for a crossing from left to
+// right, 1 for coming from the left or leaving to the right where the walks run together on the other side.
 int intersections(const Halfedges& he, const Loop& a, const Passings& b)
 {
     int indices = 0;

@@ -78,8 +78,8 @@ std::vector<Loop> LoopFinder::basis()
     return loops;
 }
 
-// Replaces some first part of the loop, at most half of it, by a shortest path if both have the same class: the
-// part for which that saves most.
+// Replaces some first part of the loop, at most half of it, by a shortest path if both have the same class:
+// the part for which that saves most.
 bool LoopFinder::takeShortcut(std::vector<int>& loop)
 {
     const double length = lengthOf(loop), leastSaving = 1e-9 * length;

@@ -21,8 +21,8 @@ Objection objectionToIndices(const PolyhedralSurface& surface)
         const Triangle& t = surface.faces[f];
         for (int v : t)
             if (v < 0 || v >= surface.vertexCount)
-                return Error{ErrorKind::BadArgument, "face " + number(f) + " names vertex " + number(v) + " of " +
-                                                         number(surface.vertexCount)};
+                return Error{ErrorKind::BadArgument, "face " + number(f) + " names vertex " + number(v) +
+                                                         " of " + number(surface.vertexCount)};
         if (t[0] == t[1] || t[1] == t[2] || t[2] == t[0])
             return Error{ErrorKind::ZeroAreaFace, "face " + number(f) + " names a vertex twice"};
     }
@@ -109,9 +109,10 @@ Objection objectionToEdges(const PolyhedralSurface& surface)
             open = Error{ErrorKind::NotClosed,
                          edgeName(sides[i]) + " is a boundary: the surface must be closed"};
         if (end - i == 2 && !turned && sides[i].upward == sides[i + 1].upward)
-            turned = Error{ErrorKind::BadArgument, "faces " + number(sides[i].halfedge / 3) + " and " +
-                                                       number(sides[i + 1].halfedge / 3) + " both run along " +
-                                                       edgeName(sides[i]) + ": orient the faces alike first"};
+            turned =
+                Error{ErrorKind::BadArgument, "faces " + number(sides[i].halfedge / 3) + " and " +
+                                                  number(sides[i + 1].halfedge / 3) + " both run along " +
+                                                  edgeName(sides[i]) + ": orient the faces alike first"};
         if (end - i == 2) {
             const double a = surface.lengths[sides[i].halfedge], b = surface.lengths[sides[i + 1].halfedge];
             if (std::abs(a - b) > 1e-12 * std::max(std::abs(a), std::abs(b)))

@@ -13,7 +13,8 @@ bool PrimitiveSet::add(const Eigen::VectorXi& v)
     int64_t divisor = 0;
     for (Eigen::Index i = k; i < n; ++i) divisor = std::gcd(divisor, w[i]);
     if (divisor != 1) return false;
-    // Euclid's algorithm on the rows, the least remainder first, until one of them has the 1 and the others 0.
+    // Euclid's algorithm on the rows, the least remainder first, until one of them has the 1 and the others
+    // 0.
     Matrix reduced = toUnits_;
     for (;;) {
         Eigen::Index least = -1;

@@ -8,8 +8,8 @@
 
 namespace gimg {
 
-/// Shortest paths along edges from one or several roots. The same object serves any number of searches, each in
-/// time that depends on what it reaches.
+/// Shortest paths along edges from one or several roots. The same object serves any number of searches, each
+/// in time that depends on what it reaches.
 class ShortestPaths
 {
 public:

@@ -47,7 +47,8 @@ TreeCotree treeCotree(const ClosedSurface& surface, const ShortestPaths& paths)
     TreeCotree result;
     for (const DualEdge& edge : dualEdges(surface, paths)) {
         const int twin = he.twin(edge.halfedge);
-        const int f = rootOf(parent, Halfedges::face(edge.halfedge)), g = rootOf(parent, Halfedges::face(twin));
+        const int f = rootOf(parent, Halfedges::face(edge.halfedge)),
+                  g = rootOf(parent, Halfedges::face(twin));
         if (f == g) {
             result.loopEdges.push_back(edge.halfedge);
         } else {

@@ -7,10 +7,10 @@
 
 namespace gimg {
 
-/// Shortest paths from a root, a tree of faces that crosses none of them, and the 2g edges that are in neither.
-/// Each of these closes one loop with the paths to its ends. Together the loops generate the fundamental group,
-/// and the face tree avoids edges with a short loop where it can, so that no other loops through the root are
-/// shorter. Source: Eppstein 2003; Erickson, Whittlesey 2005, section 3.
+/// Shortest paths from a root, a tree of faces that crosses none of them, and the 2g edges that are in
+/// neither. Each of these closes one loop with the paths to its ends. Together the loops generate the
+/// fundamental group, and the face tree avoids edges with a short loop where it can, so that no other loops
+/// through the root are shorter. Source: Eppstein 2003; Erickson, Whittlesey 2005, section 3.
 struct TreeCotree
 {
     std::vector<int> loopEdges; ///< 2g halfedges, by the length of their loops

@@ -11,6 +11,14 @@
 
 namespace gimg {
 
+/// Harmonic forms, integrated along the halfedges of the surface and along those of the triangulation that
+/// the solver works on.
+struct HarmonicForms
+{
+    std::vector<OneForm> onSurface;
+    std::vector<OneForm> onTriangulation;
+};
+
 /// Finds the harmonic form in the cohomology class of a closed form: the one of least Dirichlet energy. The
 /// energy is that of the intrinsic Delaunay triangulation, where no weight is negative; forms are given and
 /// handed out on the surface's own halfedges. One sparse factorization serves any number of forms.
@@ -22,15 +30,27 @@ public:
     /// Errors: those of closedTopology; SolverFailure.
     static Result<HarmonicSolver> of(const PolyhedralSurface& surface);
 
-    /// The harmonic forms of the classes of `forms`. Errors: SolverFailure.
-    Result<std::vector<OneForm>> harmonic(std::span<const OneForm> forms) const;
+    /// The harmonic forms of the classes of `forms`, closed forms on the surface's halfedges.
+    /// Errors: SolverFailure.
+    Result<HarmonicForms> harmonic(std::span<const OneForm> forms) const;
 
-    /// The integral of a ^ *b on the triangulation, for closed forms on the surface's halfedges.
-    Eigen::MatrixXd energies(std::span<const OneForm> forms) const;
+    /// The integrals of a ^ *b for every two closed forms on the triangulation.
+    Eigen::MatrixXd energies(std::span<const OneForm> onTriangulation) const;
+
+    /// Per face of the triangulation: the integral of |*a - b|^2, for closed forms on it. Their sum is 0 for
+    /// a harmonic form and its star. Otherwise it bounds how far a is from harmonic and b from its star, both
+    /// squared and added. Source: Prager, Synge 1947, "Approximations in elasticity based on the concept of
+    /// function space".
+    Eigen::VectorXd conjugateErrors(const OneForm& a, const OneForm& b) const;
+
+    /// Splits each face of the triangulation into about as many as `pieces` says, at most 16 at once, makes
+    /// it Delaunay again and factors anew. Errors: SolverFailure.
+    /// @param pieces  per face of the triangulation; those below 2 are split only where a neighbour is
+    Status refine(const Eigen::VectorXd& pieces);
 
     /// The largest |sum over edges at a vertex of weight times form|, relative to the root of the form's
-    /// energy.
-    double divergence(const OneForm& form) const;
+    /// energy, for a closed form on the triangulation.
+    double divergence(const OneForm& onTriangulation) const;
 
     const IntrinsicTriangulation& triangulation() const;
     const Topology& topology() const;

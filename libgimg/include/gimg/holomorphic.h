@@ -40,18 +40,32 @@ struct ConformalStructure
     /// How far thesis Algorithm 8 alone, whose star comes from the energies as measured, is from Riemann's
     /// relations. Both are 0 for a smooth surface.
     double asymmetry = 0;    ///< |P - P'| / |P| (Frobenius) of its period matrix P
-    double starResidual = 0; ///< largest |R^2 w + w| / |w| over harmonic forms w, in the norm of the energy
+    double starResidual = 0; ///< largest |R^2 w + w| / |w| over harmonic forms w, in the norm of the energy.
+                             ///< For a surface of flat triangles a bound, too: the energy of every form's
+                             ///< class is between 1 / (1 + starResidual) times and once the measured one
+
+    int triangles = 0; ///< on which forms were computed
 };
 
-/// All of it, with one factorization for all forms. Near-linear in the number of faces, linear in the genus.
-/// Errors: those of closedTopology; WrongGenus for genus 0; SolverFailure.
-/// Source: thesis §6, Algorithms 3 to 8; period matrix §4.13 and §8.2.3, in today's normalisation.
+struct ConformalOptions
+{
+    /// Triangles are split, where it helps most, until `starResidual` is at most this. Infinity to compute on
+    /// the surface's own vertices only.
+    double starResidual = 0.01;
+    int mostTriangles = 2'000'000; ///< which splits do not go beyond, whatever the residual is then
+    Progress progress;
+};
+
+/// All of it, with one factorization for all forms (and one more for each round of splits). Near-linear in
+/// the number of faces, linear in the genus. Errors: those of closedTopology; WrongGenus for genus 0;
+/// SolverFailure; BadArgument unless starResidual > 0. Source: thesis §6, Algorithms 3 to 8; period matrix
+/// §4.13 and §8.2.3, in today's normalisation.
 Result<ConformalStructure> conformalStructure(const PolyhedralSurface& surface,
-                                              const Progress& progress = {});
-Result<ConformalStructure> conformalStructure(const Mesh& mesh, const Progress& progress = {});
+                                              const ConformalOptions& options = {});
+Result<ConformalStructure> conformalStructure(const Mesh& mesh, const ConformalOptions& options = {});
 
 /// The same in given loops. Errors: as above; BadArgument if `loops` is not a canonical basis.
 Result<ConformalStructure> conformalStructure(const PolyhedralSurface& surface, const CanonicalBasis& loops,
-                                              const Progress& progress = {});
+                                              const ConformalOptions& options = {});
 
 } // namespace gimg

@@ -19,13 +19,15 @@ struct DelaunayReport
 };
 
 /// A triangulation of a surface by geodesic edges, known by their lengths. It begins as the mesh's own; a
-/// flip replaces an edge by the other diagonal of the two triangles beside it, unfolded to the plane. The
-/// surface and its vertices stay what they are, so functions on vertices mean the same before and after.
+/// flip replaces an edge by the other diagonal of the two triangles beside it, unfolded to the plane, and a
+/// split adds a vertex in the middle of an edge. The surface and its vertices stay what they are, so
+/// functions on vertices mean the same before and after.
 ///
 /// Halfedges keep the mesh's numbers (3 f + k, see Halfedges) for good, flipped ones included, but belong to
-/// faces as next() says. An edge may come to join a vertex with itself, two edges the same two vertices, and
-/// a face may meet itself. Source: Fisher, Springborn, Bobenko, Schroeder 2007, "An algorithm for the
-/// construction of intrinsic Delaunay triangulations with applications to digital geometry processing".
+/// faces as next() says. Those that splits add have numbers after them. An edge may come to join a vertex
+/// with itself, two edges the same two vertices, and a face may meet itself. Source: Fisher, Springborn,
+/// Bobenko, Schroeder 2007, "An algorithm for the construction of intrinsic Delaunay triangulations with
+/// applications to digital geometry processing".
 class IntrinsicTriangulation
 {
 public:
@@ -42,6 +44,13 @@ public:
     /// flips end, and the result is the surface's own Delaunay triangulation.
     DelaunayReport makeDelaunay();
 
+    /// Splits an edge at its middle, and with it the triangles beside it. From then on h and its twin run
+    /// from where they began to the new vertex.
+    /// @return the new vertex, vertexCount() - 1 from now on; -1 if both sides of the edge are one face,
+    /// which
+    ///         is left as it is
+    int split(int h);
+
     int vertexCount() const { return vertexCount_; }
     int faceCount() const { return halfedgeCount() / 3; }
     int halfedgeCount() const { return static_cast<int>(tail_.size()); }
@@ -50,6 +59,7 @@ public:
     int head(int h) const { return tail_[next_[h]]; }
     int next(int h) const { return next_[h]; }
     int prev(int h) const { return next_[next_[h]]; }
+    int face(int h) const { return face_[h]; } ///< 0 .. faceCount() - 1
     int twin(int h) const { return twin_[h]; } ///< -1 on the boundary
     bool onBoundary(int h) const { return twin_[h] < 0; }
 
@@ -74,13 +84,16 @@ public:
     Eigen::SparseMatrix<double> cotangentLaplacian() const;
 
     /// A closed 1-form on the mesh's halfedges (opposite on twins, with sum 0 around each face), integrated
-    /// along the halfedges of this triangulation.
+    /// along the halfedges of this triangulation, half of it on each half of a split edge.
     std::vector<double> carried(std::vector<double> closedForm) const;
 
 private:
-    struct Flip // halfedge from now on parallel to the chain first, second
+    /// A flip: the halfedge from now on parallel to the chain first, second. Or a split (added >= 0):
+    /// halfedge and twin run to the middle from now on, and close a triangle with the first new halfedge of
+    /// their side and with first, second.
+    struct Step
     {
-        int halfedge, first, second;
+        int halfedge, twin, first, second, added;
     };
 
     explicit IntrinsicTriangulation(const PolyhedralSurface& surface);
@@ -90,12 +103,14 @@ private:
     int negativeEdges() const;
     void flip(int h);
     double otherDiagonal(int h) const;
+    int halve(int h, int middle);
 
     int vertexCount_;
     std::vector<int> tail_, next_, twin_, face_;
     std::vector<double> length_;
     double addedLength_ = 0;
-    std::vector<Flip> flips_;
+    std::vector<Step> steps_;
+    size_t flips_ = 0;
 };
 
 } // namespace gimg

@@ -10,7 +10,7 @@
 namespace gimg {
 
 /// tau of a torus, moved to |tau| >= 1, -1/2 < Re tau <= 1/2 (and Re tau >= 0 where |tau| = 1): one number
-/// for all bases. Errors: BadArgument unless Im tau > 0.
+/// for all bases. Errors: BadArgument unless Im tau > 1e-100 and |tau| < 1e100.
 Result<std::complex<double>> reducedModulus(std::complex<double> tau);
 
 /// The parallelogram that a torus is conformal to, with the shortest sides there are.
@@ -31,12 +31,10 @@ struct ReducedPeriods
     Eigen::MatrixXi transformation; ///< 2g x 2g, symplectic
 };
 
-/// Moves a period matrix towards Siegel's fundamental domain: Im Z is reduced (LLL, and its first vector is
-/// its shortest), |Re Z_jk| <= 1/2, |Z_11| >= 1. For genus 1 it is reducedModulus. For genus > 1 a surface
-/// can have a few such matrices.
-/// Errors: BadArgument unless Z is symmetric to 1e-6 with a positive definite imaginary part.
-/// Source: C. L. Siegel, "Topics in complex function theory" III; Deconinck et al. 2004, "Computing Riemann
-/// theta functions".
+/// Moves a period matrix towards Siegel's fundamental domain: Im Z is LLL-reduced, |Re Z_jk| <= 1/2, |Z_11|
+/// >= 1. For genus 1 it is reducedModulus. For genus > 1 a surface can have a few such matrices. Errors:
+/// BadArgument unless Z is symmetric to 1e-6 with a positive definite imaginary part. Source: C. L. Siegel,
+/// "Topics in complex function theory" III; Deconinck et al. 2004, "Computing Riemann theta functions".
 Result<ReducedPeriods> siegelReduced(const Eigen::MatrixXcd& periodMatrix);
 
 /// (A Z + B)(C Z + D)^-1 for N = [A B; C D].

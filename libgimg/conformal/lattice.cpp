@@ -1,0 +1,85 @@
+#include "conformal/lattice.h"
+
+#include <Eigen/Cholesky>
+
+#include <algorithm>
+#include <cmath>
+
+namespace gimg {
+
+// Row operations on a basis B of the integer vectors. The Cholesky factor of B G B' holds the lengths of the
+// orthogonalised vectors on its diagonal and their projections beside it; it is made anew after every
+// exchange, which is quick enough for the sizes of periods.
+Eigen::MatrixXi reducedLattice(const Eigen::MatrixXd& gram)
+{
+    constexpr double kLovasz = 0.99;
+    constexpr int kMostExchanges = 100'000;
+    const Eigen::Index n = gram.rows();
+    Eigen::MatrixXi basis = Eigen::MatrixXi::Identity(n, n);
+    Eigen::MatrixXd factor;
+    const auto orthogonalise = [&] {
+        const Eigen::MatrixXd b = basis.cast<double>();
+        factor = Eigen::MatrixXd((b * gram * b.transpose()).llt().matrixL());
+    };
+    const auto reduceRow = [&](Eigen::Index k) {
+        for (Eigen::Index j = k - 1; j >= 0; --j) {
+            const double times = std::round(factor(k, j) / factor(j, j));
+            if (times == 0) continue;
+            basis.row(k) -= static_cast<int>(times) * basis.row(j);
+            factor.row(k).head(j + 1) -= times * factor.row(j).head(j + 1);
+        }
+    };
+    orthogonalise();
+    int exchanges = 0;
+    for (Eigen::Index k = 1; k < n && exchanges < kMostExchanges;) {
+        reduceRow(k);
+        const double own = factor(k, k), beside = factor(k, k - 1), before = factor(k - 1, k - 1);
+        if (own * own + beside * beside >= kLovasz * before * before) {
+            ++k;
+            continue;
+        }
+        basis.row(k).swap(basis.row(k - 1));
+        orthogonalise();
+        ++exchanges;
+        k = std::max<Eigen::Index>(k - 1, 1);
+    }
+    return basis;
+}
+
+namespace {
+
+/// The search one coordinate at a time, the last first: |U (v - center)|^2 is summed from below.
+struct Enumeration
+{
+    Eigen::MatrixXd upper; // U' U = G
+    const Eigen::VectorXd& center;
+    const std::function<bool(const Eigen::VectorXi&)>& visit;
+    Eigen::VectorXi v;
+
+    bool descend(Eigen::Index i, double budget)
+    {
+        double beside = 0;
+        for (Eigen::Index j = i + 1; j < v.size(); ++j) beside += upper(i, j) * (v[j] - center[j]);
+        const double middle = center[i] - beside / upper(i, i), reach = std::sqrt(budget) / upper(i, i);
+        // (Beyond the range of integers, nothing is looked for.)
+        const double low = std::ceil(std::max(middle - reach, -1e9)),
+                     high = std::floor(std::min(middle + reach, 1e9));
+        for (double x = low; x <= high; ++x) {
+            v[i] = static_cast<int>(x);
+            const double step = upper(i, i) * (x - middle);
+            if (i == 0 ? !visit(v) : !descend(i - 1, std::max(0.0, budget - step * step))) return false;
+        }
+        return true;
+    }
+};
+
+} // namespace
+
+void forEachLatticePoint(const Eigen::MatrixXd& gram, const Eigen::VectorXd& center, double squaredRadius,
+                         const std::function<bool(const Eigen::VectorXi&)>& visit)
+{
+    Enumeration search{gram.llt().matrixU(), center, visit, Eigen::VectorXi::Zero(gram.rows())};
+    search.descend(gram.rows() - 1, squaredRadius * (1 + 1e-12));
+}
+
+} // namespace gimg
