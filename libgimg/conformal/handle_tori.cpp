@@ -10,7 +10,7 @@
 namespace gimg {
 namespace {
 
-constexpr int kRoots = 16; // from which loops are looked for
+constexpr int kRoots = 8; // from which loops are looked for
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// Shortest paths along edges.

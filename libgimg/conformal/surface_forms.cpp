@@ -38,13 +38,13 @@ std::vector<size_t> independent(Eigen::MatrixXd gram, const Eigen::VectorXd& nor
     return chosen;
 }
 
-Result<SurfaceForms> formsOfBounded(const Mesh& mesh, const Topology& type, const Progress& progress)
+Result<SurfaceForms> formsOfBounded(const Mesh& mesh, const Topology& type, const ConformalOptions& options)
 {
     const int genus = 2 * type.genus + type.boundaries - 1;
     if (genus == 0) return Error{ErrorKind::WrongGenus, "a disk has no holomorphic 1-forms"};
     Result<DoubleCover> cover = doubleCover(mesh);
     if (!cover) return cover.error();
-    Result<ConformalStructure> structure = conformalStructure(cover->mesh, progress);
+    Result<ConformalStructure> structure = conformalStructure(cover->mesh, options);
     if (!structure) return structure.error();
 
     const PolyhedralSurface surface = polyhedralSurface(cover->mesh);
@@ -74,11 +74,11 @@ Result<SurfaceForms> formsOfBounded(const Mesh& mesh, const Topology& type, cons
 
 } // namespace
 
-Result<SurfaceForms> surfaceForms(const Mesh& mesh, const Progress& progress)
+Result<SurfaceForms> surfaceForms(const Mesh& mesh, const ConformalOptions& options)
 {
     const Topology type = topology(mesh);
-    if (type.boundaries > 0) return formsOfBounded(mesh, type, progress);
-    Result<ConformalStructure> structure = conformalStructure(mesh, progress);
+    if (type.boundaries > 0) return formsOfBounded(mesh, type, options);
+    Result<ConformalStructure> structure = conformalStructure(mesh, options);
     if (!structure) return structure.error();
     SurfaceForms forms;
     forms.basis = structure->holomorphic;

@@ -6,7 +6,6 @@
 #include "gimg/holomorphic.h"
 #include "gimg/mesh.h"
 #include "gimg/one_form.h"
-#include "gimg/progress.h"
 #include "gimg/result.h"
 
 #include <Eigen/Core>
@@ -37,7 +36,7 @@ struct SurfaceForms
 /// @param mesh  connected, manifold, oriented
 /// Errors: those of conformalStructure for the surface or its double covering; WrongGenus where there are no
 /// forms (genus 0 with at most one boundary loop). Source: thesis chapter 6 and §7.5.
-Result<SurfaceForms> surfaceForms(const Mesh& mesh, const Progress& progress = {});
+Result<SurfaceForms> surfaceForms(const Mesh& mesh, const ConformalOptions& options = {});
 
 /// sum of c_i basis_i. @param c  as many as there are forms
 ComplexOneForm combination(std::span<const ComplexOneForm> basis, const Eigen::VectorXcd& c);
