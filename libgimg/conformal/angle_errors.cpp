@@ -2,23 +2,6 @@
 #include "gimg/global_parameterization.h"
 
 namespace gimg {
-namespace {
-
-// Vertices within so many edges of the given ones.
-std::vector<bool> ringsAround(const Mesh& mesh, std::span<const int> vertices, int rings)
-{
-    std::vector<bool> in(mesh.positions.size(), false);
-    for (int v : vertices) in[v] = true;
-    for (int ring = 0; ring < rings; ++ring) {
-        std::vector<bool> wider = in;
-        for (const Triangle& t : mesh.faces)
-            if (in[t[0]] || in[t[1]] || in[t[2]]) wider[t[0]] = wider[t[1]] = wider[t[2]] = true;
-        in.swap(wider);
-    }
-    return in;
-}
-
-} // namespace
 
 AngleErrors angleErrors(const Mesh& mesh, const ComplexOneForm& form, std::span<const int> without, int rings)
 {

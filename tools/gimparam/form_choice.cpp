@@ -56,7 +56,8 @@ void addFormChoice(CLI::App& command, FormChoice& choice, const std::string& ifN
                 }
             },
             "coefficients of the surface's forms, as 1,0.5-2i,i (default: " + ifNone + ")")
-        ->delimiter(',');
+        ->delimiter(',')
+        ->allow_extra_args(false);
 }
 
 Result<ChosenForm> chosenForm(const Mesh& mesh, const SurfaceForms& forms, const FormChoice& choice)

@@ -52,10 +52,12 @@ void addPicture(CLI::App& command, PictureOptions& picture)
     command.add_option("--look", picture.toward, "direction from the eye into the scene, X,Y,Z")
         ->needs(file)
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->expected(3);
     command.add_option("--up", picture.up, "direction that is up in the picture, X,Y,Z (default: 0,1,0)")
         ->needs(file)
         ->delimiter(',')
+        ->allow_extra_args(false)
         ->expected(3);
 }
 

@@ -4,7 +4,6 @@
 #include "input.h"
 #include "picture.h"
 
-#include "gimg/extrema.h"
 #include "gimg/handle_separation.h"
 
 #include <nlohmann/json.hpp>
@@ -23,8 +22,8 @@ struct UvOptions
     FormChoice form;
     PictureOptions picture;
     std::string output;
-    std::vector<int> punctures; // vertices
-    int tips = 0;               // punctures at so many extrema besides
+    std::vector<int> punctures; // vertices, or
+    int tips = 0;               // how many are to be found
     bool handles = false, modular = false;
 };
 
@@ -46,11 +45,9 @@ Status punctureMesh(const UvOptions& o, Work& work)
 {
     work.punctures = o.punctures;
     if (o.tips > 0) {
-        ExtremaOptions extrema;
-        extrema.most = o.tips;
-        const std::vector<int> tips = findExtrema(work.mesh, extrema).vertices;
-        work.punctures.insert(work.punctures.end(), tips.begin(), tips.end());
-        if (tips.empty()) return Error{ErrorKind::TargetUnreachable, "no tip found to puncture"};
+        const Result<std::vector<int>> tips = findPunctures(work.mesh, o.tips);
+        if (!tips) return tips.error();
+        work.punctures = *tips;
     }
     if (work.punctures.empty()) return Done{};
     Result<PuncturedSurface> punctured = puncture(work.mesh, work.punctures);
@@ -164,7 +161,6 @@ nlohmann::ordered_json report(const Work& work)
     json["unevenness"] = unevenness(work.mesh, work.chosen.form);
     json["angle_error"] = {{"median_degrees", angles.medianDegrees},
                            {"degrees_95", angles.degrees95},
-                           {"quasi_conformal_ratio", angles.quasiConformalRatio},
                            {"faces", angles.faces},
                            {"flipped", angles.flipped}};
     json["branch_points"] = work.branch.total;
@@ -227,9 +223,11 @@ Command addUv(CLI::App& app)
            "--puncture", o->punctures,
            "leave out these vertices V1,V2,..., counted from 0, with the faces around them: holes at "
            "the tips of limbs spread the limbs out")
-        ->delimiter(',');
+        ->delimiter(',')
+        ->allow_extra_args(false);
     sub->add_option("--puncture-tips", o->tips,
-                    "leave out the tips of N limbs, as the cut would reach for them")
+                    "leave out N vertices, one by one at the far end of what is shrunken most")
+        ->excludes("--puncture")
         ->check(CLI::PositiveNumber);
     sub->add_flag("--handles", o->handles,
                   "separate the handles of a closed surface, subdividing the mesh where that needs it");

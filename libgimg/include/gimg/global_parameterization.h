@@ -142,4 +142,14 @@ struct AngleErrors
 AngleErrors angleErrors(const Mesh& mesh, const ComplexOneForm& form, std::span<const int> without,
                         int rings = 2);
 
+/// Vertices within so many edges of the given ones.
+std::vector<bool> ringsAround(const Mesh& mesh, std::span<const int> vertices, int rings);
+
+/// Vertices to puncture() so that the surface is spread more evenly: one after the other, each the far end of
+/// what the most even map shrinks most, a limb as a rule. A surface without forms is first punctured at its
+/// ends: the vertex farthest from its boundary, or one end of the longest way. Computes the forms `count`
+/// times. Errors: those of surfaceForms; BadArgument where `count` is below 1 or no vertex can be left out.
+/// Source: thesis §7.5, where holes are made by hand.
+Result<std::vector<int>> findPunctures(const Mesh& mesh, int count, const ConformalOptions& options = {});
+
 } // namespace gimg
