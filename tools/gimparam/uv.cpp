@@ -161,7 +161,7 @@ nlohmann::ordered_json report(const Work& work)
     json["unevenness"] = unevenness(work.mesh, work.chosen.form);
     json["angle_error"] = {{"median_degrees", angles.medianDegrees},
                            {"degrees_95", angles.degrees95},
-                           {"faces", angles.faces},
+                           {"of_faces", angles.faces},
                            {"flipped", angles.flipped}};
     json["branch_points"] = work.branch.total;
     json["branch_point_list"] = toJson(work.branch.inside, false);
