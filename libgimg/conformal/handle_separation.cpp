@@ -130,7 +130,7 @@ Result<HandleSeparation> separateHandles(const Mesh& mesh, const ComplexOneForm&
     if (type.genus == 0) return Error{ErrorKind::WrongGenus, "a surface of genus 0 has no handles"};
 
     const Halfedges he(mesh.faces, mesh.vertexCount());
-    const Result<std::vector<HandleTorus>> tori = handleTori(mesh, he, form.cwiseAbs(), type.genus);
+    const Result<std::vector<HandleTorus>> tori = handleTori(mesh, he, form, type.genus);
     if (!tori) return tori.error();
     HandleSeparation separation;
     separation.handleOf = isolated(he, *tori, form).handleOf;

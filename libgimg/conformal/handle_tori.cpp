@@ -10,7 +10,8 @@
 namespace gimg {
 namespace {
 
-constexpr int kRoots = 8; // from which loops are looked for
+constexpr int kRoots = 8;     // from which loops are looked for
+constexpr size_t kLoops = 24; // the shortest ones, of which each gets its way back
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// Shortest paths along edges.
@@ -46,8 +47,8 @@ private:
 class HandleFinder
 {
 public:
-    HandleFinder(const Mesh& mesh, const Halfedges& he, const Eigen::VectorXd& lengths)
-        : mesh_(mesh), he_(he), length_(lengths), free_(mesh.positions.size(), true)
+    HandleFinder(const Mesh& mesh, const Halfedges& he, const ComplexOneForm& form)
+        : mesh_(mesh), he_(he), form_(form), length_(form.cwiseAbs()), free_(mesh.positions.size(), true)
     {
         for (int v = 0; v < mesh.vertexCount(); ++v) free_[v] = he.outgoing(v) >= 0;
     }
@@ -55,26 +56,23 @@ public:
     /// The next handle; its neighbourhood is then closed to loops.
     Result<HandleTorus> next()
     {
-        const std::vector<int> a = shortestLoop();
-        if (a.empty())
+        HandleTorus best;
+        double bestOblong = kFar;
+        for (const std::vector<int>& a : shortLoops()) {
+            const std::vector<int> path = shortestReturn(a);
+            if (path.empty()) continue;
+            HandleTorus torus{{a}, {closedAlong(a, path)}, neighbourhood(a, path)};
+            const double oblong = oblongness(torus);
+            if (oblong >= bestOblong || !isTorusWithOneHole(torus.faces)) continue;
+            bestOblong = oblong;
+            best = std::move(torus);
+        }
+        if (best.faces.empty())
             return Error{ErrorKind::TargetUnreachable,
                          "the mesh is too coarse to keep the loops of its handles apart"};
-        const std::vector<int> path = shortestReturn(a);
-        if (path.empty())
-            return Error{ErrorKind::TargetUnreachable,
-                         "the mesh is too coarse: no way from one side of a loop to the other"};
-        HandleTorus torus{{a}, {closedAlong(a, path)}, {}};
-        std::vector<bool> taken(mesh_.faces.size(), false);
-        for (const std::vector<int>* chain : {&a, &path})
-            for (int h : *chain)
-                for (int v : {he_.tail(h), he_.head(h)}) takeStar(v, taken, torus.faces);
-        if (!isTorusWithOneHole(torus.faces))
-            return Error{ErrorKind::TargetUnreachable, "the mesh is too coarse around the handle at vertex " +
-                                                           std::to_string(he_.tail(a[0])) +
-                                                           ": the neighbourhoods of its loops overlap"};
-        for (int f : torus.faces)
+        for (int f : best.faces)
             for (int v : mesh_.faces[f]) free_[v] = false;
-        return torus;
+        return best;
     }
 
 private:
@@ -110,23 +108,20 @@ private:
         } while (h != first);
     }
 
-    // The shortest of the loops that a tree of shortest paths and one more edge make, and that separate
-    // nothing: those edges that join no two faces which the other edges outside the tree, the longest loops
-    // first, have not joined. Where vertices are taken all edges join: it is a hole, as if closed by a disk.
-    std::vector<int> shortestLoop() const
+    // The loops that a tree of shortest paths and one more edge make, and that separate nothing: those edges
+    // that join no two faces which the other edges outside the tree, the longest loops first, have not
+    // joined. Where vertices are taken all edges join: it is a hole, as if closed by a disk.
+    std::vector<std::vector<int>> shortLoops() const
     {
-        std::vector<int> best;
-        double bestLength = kFar;
+        std::vector<std::pair<double, std::vector<int>>> found;
         std::vector<double> nearest(mesh_.positions.size(), kFar);
         int root = static_cast<int>(std::find(free_.begin(), free_.end(), true) - free_.begin());
         for (int k = 0; k < kRoots && root < mesh_.vertexCount(); ++k) {
             const PathTree tree = pathsFrom(root);
             for (int h : loopEdges(tree)) {
-                const std::vector<int> loop = loopOver(tree, h);
+                std::vector<int> loop = loopOver(tree, h);
                 const double length = lengthOf(loop);
-                if (length >= bestLength) continue;
-                bestLength = length;
-                best = loop;
+                found.emplace_back(length, std::move(loop));
             }
             double farthest = 0; // the next root is the vertex farthest from all before
             for (int v = 0; v < mesh_.vertexCount(); ++v) {
@@ -136,7 +131,11 @@ private:
                 root = v;
             }
         }
-        return best;
+        std::sort(found.begin(), found.end());
+        std::vector<std::vector<int>> loops;
+        for (size_t i = 0; i < std::min(found.size(), kLoops); ++i)
+            loops.push_back(std::move(found[i].second));
+        return loops;
     }
 
     std::vector<int> loopEdges(const PathTree& tree) const
@@ -254,13 +253,28 @@ private:
         return length;
     }
 
-    void takeStar(int v, std::vector<bool>& taken, std::vector<int>& faces) const
+    // 1 for loops straight and at right angles in the plane; the largest number where their parallelogram is
+    // flat or turned over.
+    double oblongness(const HandleTorus& torus) const
     {
-        forOutgoing(v, [&](int h) {
-            if (taken[h / 3]) return;
-            taken[h / 3] = true;
-            faces.push_back(h / 3);
-        });
+        const std::complex<double> a = integrate(form_, torus.a.halfedges),
+                                   b = integrate(form_, torus.b.halfedges);
+        const double lengths = lengthOf(torus.a.halfedges) * lengthOf(torus.b.halfedges);
+        const double area = (std::conj(a) * b).imag();
+        return area > 0 ? lengths / area : std::numeric_limits<double>::max();
+    }
+
+    // All faces around the vertices of both.
+    std::vector<int> neighbourhood(const std::vector<int>& loop, const std::vector<int>& path) const
+    {
+        std::vector<int> faces;
+        for (const std::vector<int>* chain : {&loop, &path})
+            for (int along : *chain)
+                for (int v : {he_.tail(along), he_.head(along)})
+                    forOutgoing(v, [&](int h) { faces.push_back(h / 3); });
+        std::sort(faces.begin(), faces.end());
+        faces.erase(std::unique(faces.begin(), faces.end()), faces.end());
+        return faces;
     }
 
     bool isTorusWithOneHole(const std::vector<int>& faces) const
@@ -277,16 +291,17 @@ private:
 
     const Mesh& mesh_;
     const Halfedges& he_;
-    const Eigen::VectorXd& length_;
+    const ComplexOneForm& form_;
+    Eigen::VectorXd length_; // of each halfedge in the plane
     std::vector<bool> free_; // per vertex: no face of a handle found before touches it
 };
 
 } // namespace
 
 Result<std::vector<HandleTorus>> handleTori(const Mesh& mesh, const Halfedges& halfedges,
-                                            const Eigen::VectorXd& lengths, int genus)
+                                            const ComplexOneForm& form, int genus)
 {
-    HandleFinder finder(mesh, halfedges, lengths);
+    HandleFinder finder(mesh, halfedges, form);
     std::vector<HandleTorus> tori;
     for (int k = 0; k < genus; ++k) {
         Result<HandleTorus> torus = finder.next();

@@ -2,6 +2,7 @@
 
 #include "gimg/homology.h"
 #include "gimg/mesh.h"
+#include "gimg/one_form.h"
 #include "gimg/result.h"
 
 #include <vector>
@@ -15,12 +16,13 @@ struct HandleTorus
     std::vector<int> faces;
 };
 
-/// One for each handle of a closed surface, no two with a face in common.
-/// @param mesh     closed, connected, manifold, oriented, of this genus
-/// @param lengths  per halfedge, the same on twins: by which loops are short
-/// Errors: TargetUnreachable where a neighbourhood is no torus with one hole, or no loop is left that stays
-/// away from those found before.
+/// One for each handle of a closed surface, no two with a face in common. Of the loops that separate nothing
+/// and the shortest ways back to their other sides, each time those are taken that come nearest to the sides
+/// of a rectangle, as the form measures lengths and periods.
+/// @param mesh  closed, connected, manifold, oriented, of this genus
+/// Errors: TargetUnreachable where no neighbourhood of such loops is a torus with one hole, apart from those
+/// found before.
 Result<std::vector<HandleTorus>> handleTori(const Mesh& mesh, const Halfedges& halfedges,
-                                            const Eigen::VectorXd& lengths, int genus);
+                                            const ComplexOneForm& form, int genus);
 
 } // namespace gimg

@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <numeric>
 #include <random>
@@ -100,6 +101,51 @@ TEST(UniformForm, Refusals)
     EXPECT_EQ(mostUniformForm(mesh, wrong, false).error().kind, ErrorKind::BadArgument);
     const std::vector<ComplexOneForm> twice(2, formsOf(mesh).basis[0]);
     EXPECT_EQ(mostUniformForm(mesh, twice, false).error().kind, ErrorKind::BadArgument);
+}
+
+// A capsule: two ends, and a cylinder between them that forms of an annulus spread evenly.
+Mesh capsule(double length)
+{
+    Mesh mesh = shapes::sphere(1, 10);
+    for (Vec3& p : mesh.positions)
+        if (p.z() > 0) p.z() += length;
+    return mesh;
+}
+
+TEST(FindPunctures, EndsOfALongSurface)
+{
+    const Mesh mesh = capsule(8);
+    const Result<std::vector<int>> found = findPunctures(mesh, 2);
+    ASSERT_TRUE(found.ok()) << found.error().message;
+    std::vector<double> heights;
+    for (int v : *found) heights.push_back(mesh.positions[v].z());
+    std::sort(heights.begin(), heights.end());
+    EXPECT_LT(heights[0], -0.8);
+    EXPECT_GT(heights[1], 8.8);
+}
+
+TEST(FindPunctures, EachMakesALimbySurfaceMoreEven)
+{
+    Mesh mesh = shapes::torus(2, 0.8, 48, 24);
+    for (Vec3& p : mesh.positions) // two limbs
+        p += 3 * p.normalized() *
+             (std::exp(-20 * (p / 2.8 - Vec3(1, 0, 0)).squaredNorm()) +
+              std::exp(-20 * (p / 2.8 - Vec3(-1, 0, 0)).squaredNorm()));
+    const auto least = [](const Mesh& surface) {
+        const Result<SurfaceForms> forms = surfaceForms(surface);
+        return mostUniformForm(surface, forms->basis, forms->hasBoundary())->unevenness;
+    };
+    const Result<std::vector<int>> found = findPunctures(mesh, 2);
+    ASSERT_TRUE(found.ok()) << found.error().message;
+    for (int v : *found) EXPECT_GT(std::abs(mesh.positions[v].x()), 5);
+    EXPECT_LT(mesh.positions[(*found)[0]].x() * mesh.positions[(*found)[1]].x(), 0);
+    EXPECT_LT(least(puncture(mesh, *found)->mesh), 0.7 * least(mesh));
+}
+
+TEST(FindPunctures, Refusals)
+{
+    EXPECT_EQ(findPunctures(shapes::torus(2, 1, 9, 9), 0).error().kind, ErrorKind::BadArgument);
+    EXPECT_EQ(findPunctures(shapes::sphere(1, 1), 6).error().kind, ErrorKind::BadArgument);
 }
 
 } // namespace

@@ -34,9 +34,10 @@ struct HandleSeparation
 
 /// Separates the handles of a closed surface along the shortest curves, as the form measures length. Such
 /// curves are straight in the plane but for corners at branch points, where length costs nothing to turn.
-/// Handles are found one by one, each as the shortest loop that separates nothing and the shortest path back
-/// to its other side; the region between their neighbourhoods is divided by minimal cuts of the graph of
-/// faces, one for each handle, that keep it apart from all others.
+/// Handles are found one by one: of short loops that separate nothing, each with the shortest path back to
+/// its other side, the pair whose periods come nearest to a rectangle. The region between the neighbourhoods
+/// of the pairs is divided by minimal cuts of the graph of faces, one for each handle, that keep it apart
+/// from all others.
 /// @param mesh  closed, connected, manifold, oriented, genus g >= 1
 /// @param form  closed, on the halfedges
 /// Errors: BadArgument for a form of another size; WrongGenus for genus 0; NotClosed; TargetUnreachable where
