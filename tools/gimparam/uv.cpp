@@ -24,6 +24,7 @@ struct UvOptions
     std::string output;
     std::vector<int> punctures; // vertices, or
     int tips = 0;               // how many are to be found
+    int subdivide = 0;          // times, before all else
     bool handles = false, modular = false;
 };
 
@@ -96,6 +97,8 @@ Status separate(const UvOptions& o, Work& work)
 
 Status parameterize(const UvOptions& o, Work& work)
 {
+    for (int k = 0; k < o.subdivide; ++k)
+        work.mesh = subdivided(work.mesh, ComplexOneForm::Zero(3 * work.mesh.faceCount())).mesh;
     if (const Status status = punctureMesh(o, work); !status) return status;
     Result<SurfaceForms> forms = surfaceForms(work.mesh);
     if (!forms) return forms.error();
@@ -219,16 +222,20 @@ Command addUv(CLI::App& app)
                     "conformal factor as quality)")
         ->required();
     addFormChoice(*sub, o->form);
-    sub->add_option(
-           "--puncture", o->punctures,
-           "leave out these vertices V1,V2,..., counted from 0, with the faces around them: holes at "
-           "the tips of limbs spread the limbs out")
+    sub->add_option("--puncture", o->punctures,
+                    "leave out these vertices V1,V2,..., counted from 0 as in the mesh, with the faces "
+                    "around them: holes at "
+                    "the tips of limbs spread the limbs out")
         ->delimiter(',')
         ->allow_extra_args(false);
     sub->add_option("--puncture-tips", o->tips,
                     "leave out N vertices, one by one at the far end of what is shrunken most")
         ->excludes("--puncture")
         ->check(CLI::PositiveNumber);
+    sub->add_option(
+           "--subdivide", o->subdivide,
+           "split every triangle into four, N times, before all else: the same surface, its map finer")
+        ->check(CLI::Range(0, 6));
     sub->add_flag("--handles", o->handles,
                   "separate the handles of a closed surface, subdividing the mesh where that needs it");
     sub->add_flag("--modular", o->modular,
