@@ -116,7 +116,7 @@ public:
 
     Result<ConformalStructure> build()
     {
-        constexpr int kMostRounds = 12;
+        constexpr int kMostRounds = 20;
         report(0.2);
         Result<HarmonicSolver> solver = HarmonicSolver::of(surface_);
         if (!solver) return solver.error();
@@ -130,7 +130,9 @@ public:
             const int triangles = solver->triangulation().faceCount();
             const bool isNear = star.residuals.maxCoeff() <= options_.starResidual;
             if (!isNear && round < kMostRounds) {
-                const Eigen::VectorXd pieces = piecesWanted(*solver, *harmonic, star, options_.starResidual);
+                // (A step at a time: what is worst now hides how good the others are.)
+                const double target = std::max(options_.starResidual, 0.25 * star.residuals.maxCoeff());
+                const Eigen::VectorXd pieces = piecesWanted(*solver, *harmonic, star, target);
                 if (pieces.cwiseMin(16).sum() <= options_.mostTriangles) {
                     const Status refined = solver->refine(pieces);
                     if (!refined) return refined.error();

@@ -12,6 +12,9 @@ namespace {
 
 constexpr double kPi = std::numbers::pi;
 
+// In [-1, 1].
+double unit(std::mt19937& random) { return 2.0 * static_cast<double>(random()) / std::mt19937::max() - 1; }
+
 class Groups // of things that are glued to each other
 {
 public:
@@ -89,38 +92,53 @@ Mesh bipyramid(int sides)
     return mesh;
 }
 
-// Two copies of a closed mesh, glued crosswise along the slit edges.
-template <class IsSlit> PolyhedralSurface doubleCover(const Mesh& mesh, IsSlit isSlit)
+// Is x on the arc of the great circle from p to q, shorter than half?
+bool isOnArc(const Vec3& x, const Vec3& p, const Vec3& q)
+{
+    constexpr double kNear = 1e-9;
+    const Vec3 normal = p.cross(q).normalized();
+    return std::abs(x.dot(normal)) < kNear && p.cross(x).dot(normal) > -kNear &&
+           x.cross(q).dot(normal) > -kNear;
+}
+
+// By stereographic projection along an axis, dilation and back.
+Vec3 dilated(const Vec3& p, double factor)
+{
+    const Vec3 axis = Vec3(1, 2, 3).normalized();
+    const double height = p.dot(axis);
+    const Vec3 plane = factor * (p - height * axis); // times 1 - height
+    const double away = factor * factor * (1 + height), near = 1 - height;
+    return (2 * plane + (away - near) * axis) / (away + near);
+}
+
+// Two copies of a mesh of the sphere, glued crosswise along arcs between vertices.
+PolyhedralSurface doubleCover(const Mesh& mesh, const std::vector<std::pair<int, int>>& arcs, double dilation)
 {
     const Halfedges he(mesh.faces, mesh.vertexCount());
+    const std::vector<Vec3>& p = mesh.positions;
+    const auto isSlit = [&](int h) {
+        return std::any_of(arcs.begin(), arcs.end(), [&](const std::pair<int, int>& arc) {
+            return isOnArc(p[he.tail(h)], p[arc.first], p[arc.second]) &&
+                   isOnArc(p[he.head(h)], p[arc.first], p[arc.second]);
+        });
+    };
     const int corners = he.count(); // of one copy
     Groups groups(2 * static_cast<size_t>(corners));
     for (int h = 0; h < corners; ++h)
         for (int sheet = 0; sheet < 2; ++sheet) {
-            const int other = isSlit(he.tail(h), he.head(h)) ? 1 - sheet : sheet;
-            const int twin = he.twin(h);
+            const int other = isSlit(h) ? 1 - sheet : sheet, twin = he.twin(h);
             groups.glue(sheet * corners + h, other * corners + Halfedges::next(twin));
             groups.glue(sheet * corners + Halfedges::next(h), other * corners + twin);
         }
     PolyhedralSurface cover;
     const std::vector<int> vertex = groups.numbered(cover.vertexCount);
-    const PolyhedralSurface below = polyhedralSurface(mesh);
+    Mesh moved = mesh;
+    for (Vec3& v : moved.positions) v = dilated(v, dilation);
+    const PolyhedralSurface below = polyhedralSurface(moved);
     for (int c = 0; c < 2 * corners; c += 3) cover.faces.push_back({vertex[c], vertex[c + 1], vertex[c + 2]});
     cover.lengths = below.lengths;
     cover.lengths.insert(cover.lengths.end(), below.lengths.begin(), below.lengths.end());
     return cover;
-}
-
-// Is the edge on the arc of the great circle from p to q, shorter than half?
-bool isOnArc(const Mesh& mesh, int u, int v, const Vec3& p, const Vec3& q)
-{
-    const Vec3 normal = p.cross(q).normalized();
-    const auto isInside = [&](const Vec3& x) {
-        constexpr double kNear = 1e-9;
-        return std::abs(x.dot(normal)) < kNear && p.cross(x).dot(normal) > -kNear &&
-               x.cross(q).dot(normal) > -kNear;
-    };
-    return isInside(mesh.positions[u]) && isInside(mesh.positions[v]);
 }
 
 struct Grid // of vertices (i, j), wrapped around both ways
@@ -160,29 +178,37 @@ bool flipBadEdges(Mesh& mesh)
 
 } // namespace
 
-Mesh bipyramidSphere(int sides, int n) { return splitOnSphere(bipyramid(sides), n); }
-
-PolyhedralSurface coverOverEquator(int sides, int n)
+Mesh bipyramidSphere(int sides, int n, double off)
 {
-    const Mesh mesh = bipyramidSphere(sides, n);
-    return doubleCover(mesh, [&](int u, int v) {
-        for (int i = 0; i < sides; i += 2)
-            if (isOnArc(mesh, u, v, mesh.positions[i], mesh.positions[i + 1])) return true;
-        return false;
-    });
+    const Mesh coarse = bipyramid(sides);
+    Mesh mesh = splitOnSphere(coarse, n);
+    std::mt19937 random(11);
+    for (Vec3& p : mesh.positions) {
+        const Vec3 move = off / n * Vec3(unit(random), unit(random), unit(random));
+        bool onEdge = false;
+        for (const Triangle& t : coarse.faces)
+            for (int k = 0; k < 3; ++k)
+                onEdge |= isOnArc(p, coarse.positions[t[k]], coarse.positions[t[(k + 1) % 3]]);
+        if (!onEdge) p = (p + move).normalized();
+    }
+    return mesh;
 }
 
-PolyhedralSurface coverOverOctahedron(int n)
+PolyhedralSurface coverOverEquator(int sides, int n, double off, double dilation)
 {
-    const Mesh mesh = bipyramidSphere(4, n);
-    const auto& p = mesh.positions; // corners 0 .. 3 around the equator, poles 4 and 5
-    return doubleCover(mesh, [&](int u, int v) {
-        return isOnArc(mesh, u, v, p[0], p[1]) || isOnArc(mesh, u, v, p[2], p[4]) ||
-               isOnArc(mesh, u, v, p[3], p[5]);
-    });
+    std::vector<std::pair<int, int>> arcs;
+    for (int i = 0; i < sides; i += 2) arcs.emplace_back(i, i + 1);
+    return doubleCover(bipyramidSphere(sides, n, off), arcs, dilation);
 }
 
-PolyhedralSurface squareTiled(const std::vector<int>& right, const std::vector<int>& up, int n)
+PolyhedralSurface coverOverOctahedron(int n, double off, double dilation)
+{
+    return doubleCover(bipyramidSphere(4, n, off), {{0, 1}, {2, 4}, {3, 5}},
+                       dilation); // 4 and 5 are the poles
+}
+
+PolyhedralSurface squareTiled(const std::vector<int>& right, const std::vector<int>& up, int n, double off,
+                              double skew)
 {
     const int squares = static_cast<int>(right.size());
     const auto at = [&](int s, int i, int j) { return (s * (n + 1) + i) * (n + 1) + j; };
@@ -194,28 +220,38 @@ PolyhedralSurface squareTiled(const std::vector<int>& right, const std::vector<i
         }
     PolyhedralSurface surface;
     const std::vector<int> vertex = groups.numbered(surface.vertexCount);
-    const double side = 1.0 / n, diagonal = std::numbers::sqrt2 / n;
-    for (int s = 0; s < squares; ++s)
+    std::mt19937 random(3);
+    for (int s = 0; s < squares; ++s) {
+        std::vector<Vec2> place;
+        for (int i = 0; i <= n; ++i)
+            for (int j = 0; j <= n; ++j) {
+                const bool inside = i > 0 && j > 0 && i < n && j < n;
+                const double x = off * unit(random), y = off * unit(random);
+                place.emplace_back(std::pow((i + (inside ? x : 0)) / n, skew), (j + (inside ? y : 0)) / n);
+            }
+        const auto add = [&](int a, int b, int c) {
+            surface.faces.push_back({vertex[at(s, 0, a)], vertex[at(s, 0, b)], vertex[at(s, 0, c)]});
+            for (const auto& [from, to] : {std::pair(a, b), std::pair(b, c), std::pair(c, a)})
+                surface.lengths.push_back((place[to] - place[from]).norm());
+        };
         for (int i = 0; i < n; ++i)
             for (int j = 0; j < n; ++j) {
-                const int a = vertex[at(s, i, j)], b = vertex[at(s, i + 1, j)];
-                const int c = vertex[at(s, i + 1, j + 1)], d = vertex[at(s, i, j + 1)];
-                surface.faces.push_back({a, b, c});
-                surface.lengths.insert(surface.lengths.end(), {side, side, diagonal});
-                surface.faces.push_back({a, c, d});
-                surface.lengths.insert(surface.lengths.end(), {diagonal, side, side});
+                const int a = at(0, i, j), b = at(0, i + 1, j), c = b + 1, d = a + 1;
+                add(a, b, c);
+                add(a, c, d);
             }
+    }
     return surface;
 }
 
 Mesh roughTorus(double major, double minor, int nu, int nv, double off, bool irregular, uint32_t seed)
 {
     std::mt19937 random(seed);
-    const auto move = [&] { return off * (2.0 * random() / std::mt19937::max() - 1); };
     Mesh mesh;
     for (int i = 0; i < nu; ++i)
         for (int j = 0; j < nv; ++j) {
-            const double u = 2 * kPi * (i + move()) / nu, v = 2 * kPi * (j + move()) / nv;
+            const double u = 2 * kPi * (i + off * unit(random)) / nu,
+                         v = 2 * kPi * (j + off * unit(random)) / nv;
             const double radius = major + minor * std::cos(v);
             mesh.positions.emplace_back(radius * std::cos(u), radius * std::sin(u), minor * std::sin(v));
         }

@@ -231,6 +231,54 @@ TEST(Intrinsic, ACarriedFormIsThatOfTheSameFunction)
                     1e-12);
 }
 
+TEST(Intrinsic, SplitsKeepTheSurfaceAndHalveForms)
+{
+    const Mesh mesh = sheared(shapes::surfaceOfGenus(2, 1, 3));
+    IntrinsicTriangulation triangulation = intrinsic(mesh);
+    std::vector<double> form;
+    for (int h = 0; h < triangulation.halfedgeCount(); ++h)
+        form.push_back(mesh.positions[triangulation.head(h)].x() - mesh.positions[triangulation.tail(h)].x());
+    const std::vector<double> angles = angleSums(triangulation);
+    std::vector<double> x; // per vertex
+    for (const Vec3& p : mesh.positions) x.push_back(p.x());
+    std::mt19937 random(8);
+    const int faces = triangulation.faceCount();
+    int added = 0;
+    for (int i = 0; i < 300; ++i) { // splits of splits, at the boundary too
+        const int h = static_cast<int>(random() % static_cast<size_t>(triangulation.halfedgeCount()));
+        const int tail = triangulation.tail(h), head = triangulation.head(h);
+        const bool onBoundary = triangulation.onBoundary(h);
+        const double length = triangulation.length(h);
+        ASSERT_EQ(triangulation.split(h), static_cast<int>(x.size()));
+        EXPECT_EQ(triangulation.tail(h), tail);
+        EXPECT_EQ(triangulation.head(h), static_cast<int>(x.size()));
+        EXPECT_EQ(triangulation.length(h), length / 2);
+        x.push_back((x[tail] + x[head]) / 2);
+        added += onBoundary ? 1 : 2;
+    }
+    EXPECT_EQ(triangulation.faceCount(), faces + added);
+    EXPECT_EQ(triangulation.vertexCount(), mesh.vertexCount() + 300);
+    for (int round = 0; round < 2; ++round, triangulation.makeDelaunay()) {
+        const std::vector<double> carried = triangulation.carried(form);
+        for (int h = 0; h < triangulation.halfedgeCount(); ++h) {
+            EXPECT_NEAR(carried[h] + carried[triangulation.next(h)] + carried[triangulation.prev(h)], 0,
+                        1e-12);
+            if (round == 0) {
+                EXPECT_NEAR(carried[h], x[triangulation.head(h)] - x[triangulation.tail(h)], 1e-12);
+            }
+            if (!triangulation.onBoundary(h)) {
+                EXPECT_EQ(triangulation.twin(triangulation.twin(h)), h);
+                EXPECT_EQ(triangulation.tail(triangulation.twin(h)), triangulation.head(h));
+                EXPECT_EQ(triangulation.length(triangulation.twin(h)), triangulation.length(h));
+            }
+            EXPECT_EQ(triangulation.face(h), triangulation.face(triangulation.next(h)));
+        }
+        const std::vector<double> after = angleSums(triangulation);
+        for (size_t v = 0; v < angles.size(); ++v) EXPECT_NEAR(after[v], angles[v], 1e-9);
+        EXPECT_NEAR(triangulation.vertexAreas().sum(), surfaceArea(mesh), 1e-10 * surfaceArea(mesh));
+    }
+}
+
 TEST(Intrinsic, DegenerateTrianglesGetFiniteWeights)
 {
     Mesh mesh = shapes::torus(2, 1, 12, 8);
