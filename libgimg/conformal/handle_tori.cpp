@@ -10,8 +10,9 @@
 namespace gimg {
 namespace {
 
-constexpr int kRoots = 8;     // from which loops are looked for
-constexpr size_t kLoops = 24; // the shortest ones, of which each gets its way back
+constexpr int kRoots = 8;          // from which loops are looked for
+constexpr size_t kLoops = 24;      // the shortest ones, of which each gets its way back
+constexpr size_t kBeginnings = 16; // of a loop that are tried
 constexpr double kFar = std::numeric_limits<double>::infinity();
 
 /// Shortest paths along edges.
@@ -73,6 +74,31 @@ public:
         for (int f : best.faces)
             for (int v : mesh_.faces[f]) free_[v] = false;
         return best;
+    }
+
+    /// The shortest loop, turned to where the way back to its beginning is shortest, and that way.
+    Result<CrossingLoops> crossing() const
+    {
+        CrossingLoops best;
+        double shortest = kFar;
+        const std::vector<std::vector<int>> loops = shortLoops();
+        for (size_t i = 0; i < loops.size() && shortest == kFar; ++i) { // later ones if the first have no way
+            const std::vector<int>& loop = loops[i];
+            const size_t stride = std::max(loop.size() / kBeginnings, size_t{1});
+            for (size_t begin = 0; begin < loop.size(); begin += stride) {
+                const std::vector<int> back = shortestReturn(loop, he_.tail(loop[begin]));
+                const double length = lengthOf(back);
+                if (back.empty() || length >= shortest) continue;
+                shortest = length;
+                best = {{loop}, {back}};
+                std::rotate(best.a.halfedges.begin(),
+                            best.a.halfedges.begin() + static_cast<std::ptrdiff_t>(begin),
+                            best.a.halfedges.end());
+            }
+        }
+        if (shortest < kFar) return best;
+        return Error{ErrorKind::TargetUnreachable,
+                     "the mesh is too coarse for two loops that cross in one vertex"};
     }
 
 private:
@@ -177,8 +203,9 @@ private:
         return there;
     }
 
-    // From the left side of the loop to its right side, through vertices that are not on it.
-    std::vector<int> shortestReturn(const std::vector<int>& loop) const
+    // From the left side of the loop to its right side, through vertices that are not on it; if a vertex of
+    // it is given, from there and back there.
+    std::vector<int> shortestReturn(const std::vector<int>& loop, int at = -1) const
     {
         enum Side : char
         {
@@ -192,6 +219,7 @@ private:
         for (size_t i = 0; i < loop.size(); ++i) {
             const int ahead = loop[i], behind = he_.twin(loop[(i + loop.size() - 1) % loop.size()]);
             onLoop[he_.tail(ahead)] = true;
+            if (at >= 0 && he_.tail(ahead) != at) continue;
             for (int h = he_.rotateCcw(ahead); h != behind; h = he_.rotateCcw(h)) side[h] = Left;
             for (int h = he_.rotateCcw(behind); h != ahead; h = he_.rotateCcw(h)) side[h] = Right;
         }
@@ -309,6 +337,11 @@ Result<std::vector<HandleTorus>> handleTori(const Mesh& mesh, const Halfedges& h
         tori.push_back(std::move(*torus));
     }
     return tori;
+}
+
+Result<CrossingLoops> crossingLoops(const Mesh& mesh, const Halfedges& halfedges, const ComplexOneForm& form)
+{
+    return HandleFinder(mesh, halfedges, form).crossing();
 }
 
 } // namespace gimg

@@ -25,4 +25,15 @@ struct HandleTorus
 Result<std::vector<HandleTorus>> handleTori(const Mesh& mesh, const Halfedges& halfedges,
                                             const ComplexOneForm& form, int genus);
 
+/// Two loops that meet in one vertex, where both begin, and cross there with a . b = 1.
+struct CrossingLoops
+{
+    Loop a, b;
+};
+
+/// The shortest loop that separates nothing, and the shortest that crosses it so, as the form measures
+/// length. Errors: TargetUnreachable where the mesh is too coarse.
+/// @param mesh  closed, connected, manifold, oriented, genus >= 1
+Result<CrossingLoops> crossingLoops(const Mesh& mesh, const Halfedges& halfedges, const ComplexOneForm& form);
+
 } // namespace gimg
