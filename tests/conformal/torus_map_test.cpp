@@ -2,6 +2,7 @@
 
 #include "gimg/conformality.h"
 #include "gimg/sample.h"
+#include "gimg/unfold.h"
 #include "shapes.h"
 
 #include <gtest/gtest.h>
@@ -79,6 +80,37 @@ TEST(TorusMap, GeometryImageIsTheTorus)
     }
     EXPECT_NEAR(surfaceArea(sampled), surfaceArea(mesh), 0.01 * surfaceArea(mesh));
     EXPECT_NEAR(shapes::volume(sampled), shapes::volume(mesh), 0.01 * shapes::volume(mesh));
+}
+
+// Asked for a conformal map, unfold takes this one; with a layout of its own, the harmonic map of a square.
+TEST(TorusMap, IsWhatUnfoldTakes)
+{
+    const Mesh mesh = shapes::torus(3, 1, 48, 24);
+    UnfoldOptions options;
+    options.param = MapKind::Conformal;
+    const Result<Unfolded> torus = unfold(mesh, options);
+    ASSERT_TRUE(torus.ok()) << torus.error().message;
+    EXPECT_EQ(torus->square.disk.sides.size(), 4u);
+    options.layout = SquareLayout::Cut;
+    const Result<Unfolded> harmonic = unfold(mesh, options);
+    ASSERT_TRUE(harmonic.ok()) << harmonic.error().message;
+    const auto energy = [](const Unfolded& unfolded) { // of the torus: tau + 1 / tau for a rectangle, squared
+        const Mesh& disk = unfolded.square.disk.mesh;
+        double sum = 0;
+        for (const Triangle& f : disk.faces) {
+            const Vec3 a = disk.positions[f[1]] - disk.positions[f[0]],
+                       b = disk.positions[f[2]] - disk.positions[f[0]];
+            const Vec2 u = unfolded.map.st[f[1]] - unfolded.map.st[f[0]],
+                       v = unfolded.map.st[f[2]] - unfolded.map.st[f[0]];
+            const double area = a.cross(b).norm();
+            sum += (u.squaredNorm() * b.squaredNorm() - 2 * u.dot(v) * a.dot(b) +
+                    v.squaredNorm() * a.squaredNorm()) /
+                   (2 * area);
+        }
+        return sum;
+    };
+    EXPECT_NEAR(energy(*torus), std::sqrt(8) + 1 / std::sqrt(8), 0.02); // the least of all maps of this torus
+    EXPECT_GT(energy(*harmonic), 1.02 * energy(*torus));
 }
 
 TEST(TorusMap, Refusals)
