@@ -1,9 +1,12 @@
 #include "form_choice.h"
 
+#include "../gimenc/status_line.h"
+
 #include <CLI/App.hpp>
 #include <nlohmann/json.hpp>
 
 #include <charconv>
+#include <cmath>
 
 namespace gimg::gimparam {
 namespace {
@@ -24,6 +27,15 @@ std::optional<double> readNumber(const char*& at, const char* end)
     if (failure != std::errc()) return std::nullopt;
     at = rest;
     return sign * value;
+}
+
+ConformalOptions withProgress(const gimenc::StatusLine& line, const std::string& stage)
+{
+    ConformalOptions options;
+    options.progress = [&line, stage](double fraction) {
+        line.show(stage + " " + std::to_string(std::lround(100 * fraction)) + " %");
+    };
+    return options;
 }
 
 } // namespace
@@ -58,6 +70,18 @@ void addFormChoice(CLI::App& command, FormChoice& choice, const std::string& ifN
             "coefficients of the surface's forms, as 1,0.5-2i,i (default: " + ifNone + ")")
         ->delimiter(',')
         ->allow_extra_args(false);
+}
+
+Result<SurfaceForms> formsOf(const Mesh& mesh, bool quiet)
+{
+    const gimenc::StatusLine progress(!quiet);
+    return surfaceForms(mesh, withProgress(progress, "forms"));
+}
+
+Result<std::vector<int>> puncturesOf(const Mesh& mesh, int count, bool quiet)
+{
+    const gimenc::StatusLine progress(!quiet);
+    return findPunctures(mesh, count, withProgress(progress, "looking for punctures: forms"));
 }
 
 Result<ChosenForm> chosenForm(const Mesh& mesh, const SurfaceForms& forms, const FormChoice& choice)

@@ -28,6 +28,12 @@ void addFormChoice(CLI::App& command, FormChoice& choice,
 /// Reads a complex number: 2, -0.5, i, 1+2i, 1e-3-0.5i. Nothing if it is anything else.
 std::optional<std::complex<double>> parseComplex(const std::string& text);
 
+/// surfaceForms, with a line on the terminal that says how far it is, unless told to be quiet.
+Result<SurfaceForms> formsOf(const Mesh& mesh, bool quiet);
+
+/// The same for findPunctures.
+Result<std::vector<int>> puncturesOf(const Mesh& mesh, int count, bool quiet);
+
 /// A combination of a surface's forms, on the surface and, if it has a boundary, on its covering.
 struct ChosenForm
 {

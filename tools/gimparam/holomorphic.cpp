@@ -38,7 +38,7 @@ int writeHolomorphic(const HolomorphicOptions& o)
 {
     const Result<MeshFile> file = readInput(o.input);
     if (!file) return cli::fail("gimparam", cli::Refused, file.error().message);
-    const Result<SurfaceForms> forms = surfaceForms(file->mesh);
+    const Result<SurfaceForms> forms = formsOf(file->mesh, o.input.quiet);
     if (!forms) return failWith(forms.error(), o.input.path);
     std::vector<ComplexOneForm> written = forms->basis;
     if (!o.form.coefficients.empty()) {

@@ -109,7 +109,7 @@ int computePeriods(const PeriodsOptions& o)
     if (topology(file->mesh).boundaries > 0)
         return cli::fail("gimparam", cli::Refused,
                          o.input.path + ": periods are those of a closed surface, this one has a boundary");
-    const Result<SurfaceForms> forms = surfaceForms(file->mesh);
+    const Result<SurfaceForms> forms = formsOf(file->mesh, o.input.quiet);
     if (!forms) return failWith(forms.error(), o.input.path);
     const Result<Periods> periods = measure(file->mesh, *forms, o.form);
     if (!periods) return failWith(periods.error(), o.input.path);

@@ -46,7 +46,7 @@ Status punctureMesh(const UvOptions& o, Work& work)
 {
     work.punctures = o.punctures;
     if (o.tips > 0) {
-        const Result<std::vector<int>> tips = findPunctures(work.mesh, o.tips);
+        const Result<std::vector<int>> tips = puncturesOf(work.mesh, o.tips, o.input.quiet);
         if (!tips) return tips.error();
         work.punctures = *tips;
     }
@@ -100,7 +100,7 @@ Status parameterize(const UvOptions& o, Work& work)
     for (int k = 0; k < o.subdivide; ++k)
         work.mesh = subdivided(work.mesh, ComplexOneForm::Zero(3 * work.mesh.faceCount())).mesh;
     if (const Status status = punctureMesh(o, work); !status) return status;
-    Result<SurfaceForms> forms = surfaceForms(work.mesh);
+    Result<SurfaceForms> forms = formsOf(work.mesh, o.input.quiet);
     if (!forms) return forms.error();
     work.forms = std::move(*forms);
     Result<ChosenForm> chosen = chosenForm(work.mesh, work.forms, o.form);
