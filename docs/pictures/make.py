@@ -210,8 +210,8 @@ def checkered(studio, mesh, *options):
 def conformal_handles(studio):
     """Checkerboards of holomorphic forms; handles in colours of their own, branch points red."""
     above = ["--look", "0.2,0.9,-1", "--fields", 32]
-    panels = [checkered(studio, studio.fetched("eight"), "--subdivide", 2, "--handles", "--look", "-0.3,-0.9,-0.6", "--fields", 28),
-              checkered(studio, studio.shape("genus", "--genus", "3", "--resolution", "16"), "--handles", *above)]
+    panels = [checkered(studio, studio.fetched("eight"), "--subdivide", 2, "--modular", "--look", "-0.3,-0.9,-0.6", "--fields", 28),
+              checkered(studio, studio.shape("genus", "--genus", "3", "--resolution", "16"), "--modular", *above)]
     save(row(panels, ["eight", "genus 3"]), "conformal-handles.png", colours=128)
 
 

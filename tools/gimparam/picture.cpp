@@ -2,7 +2,11 @@
 
 #include <CLI/App.hpp>
 
+#include <Eigen/LU>
+
+#include <algorithm>
 #include <cmath>
+#include <complex>
 
 namespace gimg::gimparam {
 namespace {
@@ -25,6 +29,26 @@ double areaOf(const CornerMap& map)
         area += std::abs(a[0] * b[1] - a[1] * b[0]) / 2;
     }
     return area;
+}
+
+// From coordinates in the parallelogram of a handle to fields. Lattice bases are changed by integers only,
+// until neither side gets shorter by the other (Gauss).
+Eigen::Matrix2d fieldsOf(const Handle& handle, double side)
+{
+    std::complex<double> p = handle.periodA, q = handle.periodB;
+    Eigen::Matrix2d sides = Eigen::Matrix2d::Identity(); // columns: p and q in terms of A and B
+    for (;;) {
+        if (std::norm(q) < std::norm(p)) {
+            std::swap(p, q);
+            sides.col(0).swap(sides.col(1));
+        }
+        const double whole = std::round((std::conj(p) * q).real() / std::norm(p));
+        if (whole == 0) break;
+        q -= whole * p;
+        sides.col(1) -= whole * sides.col(0);
+    }
+    const auto even = [&](double length) { return 2 * std::max(1.0, std::round(length / (2 * side))); };
+    return Eigen::Vector2d(even(std::abs(p)), even(std::abs(q))).asDiagonal() * sides.inverse();
 }
 
 } // namespace
@@ -61,11 +85,23 @@ void addPicture(CLI::App& command, PictureOptions& picture)
         ->expected(3);
 }
 
-Status writePicture(const Mesh& mesh, const CornerMap& map, const std::vector<int>& part,
+double fieldSide(const CornerMap& map, double fields) { return std::sqrt(areaOf(map)) / fields; }
+
+CornerMap seamlessFields(const HandleSeparation& separation, const CornerMap& modular, double side)
+{
+    std::vector<Eigen::Matrix2d> toFields;
+    for (const Handle& handle : separation.handles) toFields.push_back(fieldsOf(handle, side));
+    CornerMap fields = modular;
+    for (size_t f = 0; f < fields.corners.size(); ++f)
+        for (int c : fields.corners[f]) fields.uv[c] = toFields[separation.handleOf[f]] * modular.uv[c];
+    return fields;
+}
+
+Status writePicture(const Mesh& mesh, const CornerMap& map, double side, const std::vector<int>& part,
                     const std::vector<Vec3>& marks, const PictureOptions& picture)
 {
     Checkerboard board;
-    board.side = std::sqrt(areaOf(map)) / picture.fields;
+    board.side = side;
     if (!(board.side > 0)) return Error{ErrorKind::BadArgument, "the map has no area to draw"};
     board.colors = kPairs;
     board.part = part;

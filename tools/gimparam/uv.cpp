@@ -199,9 +199,12 @@ int writeUv(const UvOptions& o)
         std::vector<Vec3> marks;
         for (const BranchPoints* points : {&work.branch.inside, &work.branch.onBoundary})
             for (const BranchPoint& point : points->points) marks.push_back(point.position);
+        const double side = fieldSide(work.plane.map, o.picture.fields);
+        const std::vector<int> parts = work.separation ? work.separation->handleOf : std::vector<int>();
         const Status status =
-            writePicture(work.mesh, work.plane.map,
-                         work.separation ? work.separation->handleOf : std::vector<int>(), marks, o.picture);
+            work.modular ? writePicture(work.mesh, seamlessFields(*work.separation, *work.modular, side), 1,
+                                        parts, marks, o.picture)
+                         : writePicture(work.mesh, work.plane.map, side, parts, marks, o.picture);
         if (!status) return failWith(status.error());
     }
     return finish(o.input, *file, o.input.json.empty() ? nlohmann::ordered_json() : report(work));
@@ -238,8 +241,10 @@ Command addUv(CLI::App& app)
         ->check(CLI::Range(0, 6));
     sub->add_flag("--handles", o->handles,
                   "separate the handles of a closed surface, subdividing the mesh where that needs it");
-    sub->add_flag("--modular", o->modular,
-                  "write coordinates in the parallelogram of each handle, which repeat with the unit square");
+    sub->add_flag(
+        "--modular", o->modular,
+        "write coordinates in the parallelogram of each handle, which repeat with the unit square; the "
+        "picture then has seams at the separators only");
     addPicture(*sub, o->picture);
     return {sub, [o] { return writeUv(*o); }};
 }
