@@ -17,7 +17,7 @@ namespace {
 using Complex = std::complex<double>;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-constexpr double kCentred = 1e-9; // what moves the mass centre less than that needs no centring after it
+constexpr double kCentred = 1e-9; // a mass centre nearer to the sphere's is left there
 
 // Limbs shrink by exp(-length / radius), below what coordinates of doubles can tell apart. Where the scale u
 // falls below `from`, weights times exp(steepness (u - from)) make it fall more slowly, `slowed` times: along a
@@ -29,24 +29,24 @@ struct Inflation
     double steepness() const { return 1 / slowed - slowed; }
 };
 
-Inflation neededInflation(const Eigen::VectorXd& logScale, const Eigen::VectorXd& vertexArea)
+// @param logScale  of the sphere over the surface, up to a constant
+Inflation neededInflation(Eigen::VectorXd& logScale, const Eigen::VectorXd& vertexArea)
 {
-    constexpr double kSmallest = 1e-11;  // triangle on the sphere, as the root of its area
-    constexpr double kShallowest = -12;  // where conformality may be given up
-    constexpr double kSlowest = 0.3;     // preferred
-    constexpr double kSteepest = 600;    // exponent that weights may fall to
+    constexpr double kSmallest = 3e-14; // triangle on the sphere, as the root of its area
+    constexpr double kShallowest = -12; // where conformality may be given up
+    constexpr double kSlowest = 0.3;    // preferred
+    constexpr double kSteepest = 600;   // exponent that weights may fall to
+    // The sphere has an area of 4 pi; the surface is taken to have that, too.
+    const double highest = logScale.maxCoeff(), area = vertexArea.sum();
+    logScale.array() -= highest + 0.5 * std::log(vertexArea.dot((2 * (logScale.array() - highest)).exp().matrix()) / area);
     double smallest = 0;
     for (int v = 0; v < logScale.size(); ++v)
-        smallest = std::min(smallest,
-                            logScale[v] + 0.5 * std::log(vertexArea[v] * 4 * std::numbers::pi / vertexArea.sum()));
+        smallest = std::min(smallest, logScale[v] + 0.5 * std::log(vertexArea[v] * 4 * std::numbers::pi / area));
     const double missing = std::log(kSmallest) - smallest, deepest = logScale.minCoeff();
-    Inflation inflation;
-    if (missing <= 0) return inflation;
-    inflation.from = std::min(kShallowest, deepest + missing / (1 - kSlowest));
-    const double depth = inflation.from - deepest;
+    if (missing <= 0) return {};
+    const double from = std::min(kShallowest, deepest + missing / (1 - kSlowest)), depth = from - deepest;
     if (!(depth > 0)) return {};
-    inflation.slowed = std::max({1 - missing / depth, depth / kSteepest, 0.01});
-    return inflation;
+    return {from, std::max({1 - missing / depth, depth / kSteepest, 0.01})};
 }
 
 // The cotangent Laplacian, with smaller weights in limbs that need it.
@@ -82,31 +82,24 @@ double weightedMedian(std::vector<std::pair<double, double>> valueAndWeight)
     return 0;
 }
 
-// Half of the surface within the circle that becomes the equator.
-std::vector<Vec3> fromPlane(const std::vector<Complex>& plane, const std::vector<double>& mass)
+// Half of the surface lies within the circle that becomes the equator.
+struct Equator
 {
-    const auto median = [&](auto measured) {
-        std::vector<std::pair<double, double>> values;
-        for (size_t v = 0; v < plane.size(); ++v) values.push_back({measured(plane[v]), mass[v]});
-        return weightedMedian(std::move(values));
-    };
-    const Complex centre(median([](Complex z) { return z.real(); }), median([](Complex z) { return z.imag(); }));
-    const double radius = median([&](Complex z) { return std::abs(z - centre); });
-    std::vector<Vec3> position;
-    for (const Complex& z : plane) position.push_back(ontoSphere((z - centre) / radius));
-    return position;
-}
+    Complex centre;
+    double radius = 1;
 
-std::vector<double> vertexMasses(const Mesh& mesh)
-{
-    std::vector<double> mass(mesh.positions.size(), 0);
-    for (const Triangle& t : mesh.faces) {
-        const Vec3& p = mesh.positions[t[0]];
-        const double area = 0.5 * (mesh.positions[t[1]] - p).cross(mesh.positions[t[2]] - p).norm();
-        for (int v : t) mass[v] += area / 3;
+    Equator(const std::vector<Complex>& plane, const std::vector<double>& mass)
+    {
+        const auto median = [&](auto measured) {
+            std::vector<std::pair<double, double>> values;
+            for (size_t v = 0; v < plane.size(); ++v) values.push_back({measured(plane[v]), mass[v]});
+            return weightedMedian(std::move(values));
+        };
+        centre = {median([](Complex z) { return z.real(); }), median([](Complex z) { return z.imag(); })};
+        radius = median([&](Complex z) { return std::abs(z - centre); });
     }
-    return mass;
-}
+    Complex operator()(const Complex& z) const { return (z - centre) / radius; }
+};
 
 // Harmonic in the stereographic plane over the cap around `pole`, with what lies beyond it held.
 Status makeCapHarmonic(const SparseMatrix& laplacian, const Vec3& pole, std::vector<Vec3>& position)
@@ -184,19 +177,26 @@ private:
         surface->makeDelaunay();
         tell(0.1);
         const SparseMatrix cotangents = surface->cotangentLaplacian();
-        const Result<Eigen::VectorXd> logScale = logScales(*surface, cotangents);
-        if (!logScale) return logScale.error();
-        const Inflation inflation = neededInflation(*logScale, surface->vertexAreas());
-        if (inflation.slowed < 1)
-            map_.inflated = static_cast<int>((logScale->array() < inflation.from).count());
-        const SparseMatrix laplacian = inflatedLaplacian(cotangents, *logScale, inflation);
+        const Result<int> outside = triangleForOutside(*surface, cotangents);
+        if (!outside) return outside.error();
         tell(0.2);
-        const Result<PuncturedPlane> plane = mapPunctured(*surface, laplacian, *logScale);
+        Result<PuncturedPlane> plane = mapPunctured(*surface, cotangents, *outside);
         if (!plane) return plane.error();
-        map_.position = fromPlane(plane->z, mass_);
+        Eigen::VectorXd logScale = plane->logScale;
+        const Equator equator(plane->z, mass_);
+        for (int v = 0; v < logScale.size(); ++v) logScale[v] -= std::log1p(std::norm(equator(plane->z[v])));
+        const Inflation inflation = neededInflation(logScale, surface->vertexAreas());
+        const SparseMatrix laplacian = inflatedLaplacian(cotangents, logScale, inflation);
+        if (inflation.slowed < 1) {
+            map_.inflated = static_cast<int>((logScale.array() < inflation.from).count());
+            plane = mapPunctured(*surface, laplacian, *outside);
+            if (!plane) return plane.error();
+        }
+        const Equator settled(plane->z, mass_);
+        for (const Complex& z : plane->z) map_.position.push_back(ontoSphere(settled(z)));
         if (const Status placed = centre(); !placed) return placed.error();
         tell(0.4);
-        const Vec3 pole = map_.position[plane->outside];
+        const Vec3 pole = map_.position[surface->tail(*outside)];
         for (const Vec3& side : {pole, Vec3(-pole)})
             if (const Status solved = improve(laplacian, side); !solved) return solved.error();
         return Done{};
@@ -251,6 +251,17 @@ private:
 };
 
 } // namespace
+
+std::vector<double> vertexMasses(const Mesh& mesh)
+{
+    std::vector<double> mass(mesh.positions.size(), 0);
+    for (const Triangle& t : mesh.faces) {
+        const Vec3& p = mesh.positions[t[0]];
+        const double area = 0.5 * (mesh.positions[t[1]] - p).cross(mesh.positions[t[2]] - p).norm();
+        for (int v : t) mass[v] += area / 3;
+    }
+    return mass;
+}
 
 Result<SphereMap> sphereMap(const Mesh& mesh, const SphereMapOptions& options, const Progress& progress)
 {

@@ -22,10 +22,10 @@ struct SphereMap
     std::vector<Vec3> position; ///< of every vertex, of length 1
     Conformality quality;       ///< the triangles of the sphere taken as flat ones
     Vec3 massCentre;            ///< mean of the map over the surface's area
+    int flipped = 0;            ///< triangles of which the sphere is on the wrong side; 0 from sphereMap()
     int flippedBefore = 0;      ///< triangles that were flipped before untangling
     int untangled = 0;          ///< vertices that untangling has moved
     int inflated = 0;           ///< vertices of limbs too long for doubles, which are wider than conformal
-    int iterations = 0;         ///< of the descent, where there was one
 };
 
 /// Maps a closed surface of genus 0 conformally onto the unit sphere, as far as triangles can be: no triangle
@@ -38,6 +38,9 @@ struct SphereMap
 /// docs/sphere.md.
 Result<SphereMap> sphereMap(const Mesh& mesh, const SphereMapOptions& options = {},
                             const Progress& progress = {});
+
+/// A third of the areas of the faces around each vertex: what masses are for the centre of a map.
+std::vector<double> vertexMasses(const Mesh& mesh);
 
 /// The sign of det(a, b, c): 1 if the triangle runs counter-clockwise seen from outside the sphere, 0 if its
 /// corners lie on a great circle. Exact (unless products of three coordinates underflow).
