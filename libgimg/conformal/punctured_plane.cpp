@@ -9,10 +9,10 @@
 namespace gimg {
 namespace {
 
-const Error kUnsolvable{ErrorKind::FlippedTriangle, "the linear system of the map could not be solved"};
+const Error kUnsolvable{ErrorKind::SolverFailure, "the linear system of the map could not be solved"};
 
-// Less the curvature of each vertex: what the Laplacian of the logarithm of the scale is where the metric becomes
-// flat.
+// Less the curvature of each vertex: what the Laplacian of the logarithm of the scale is where the metric
+// becomes flat.
 Eigen::VectorXd flatSource(const IntrinsicTriangulation& surface)
 {
     Eigen::VectorXd source = Eigen::VectorXd::Constant(surface.vertexCount(), -2 * std::numbers::pi);
@@ -33,7 +33,8 @@ void makeConformal(const IntrinsicTriangulation& surface, std::vector<std::compl
             if (h > surface.next(h) || h > surface.prev(h)) continue; // once a face
             // Corners of the face at 0, l and p in the plane.
             const double l = surface.length(h), q = surface.length(surface.prev(h)), angle = surface.angle(h);
-            const std::complex<double> p = std::polar(q, angle), edge = z[surface.head(h)] - z[surface.tail(h)],
+            const std::complex<double> p = std::polar(q, angle),
+                                       edge = z[surface.head(h)] - z[surface.tail(h)],
                                        other = z[surface.tail(surface.prev(h))] - z[surface.tail(h)];
             // edge = l (f_z + f_zbar), other = p f_z + conj(p) f_zbar.
             const std::complex<double> along = edge / l;
@@ -54,7 +55,8 @@ void makeConformal(const IntrinsicTriangulation& surface, std::vector<std::compl
 
 } // namespace
 
-Result<Eigen::VectorXd> logScales(const IntrinsicTriangulation& surface, const Eigen::SparseMatrix<double>& laplacian)
+Result<Eigen::VectorXd> logScales(const IntrinsicTriangulation& surface,
+                                  const Eigen::SparseMatrix<double>& laplacian)
 {
     const Eigen::VectorXd area = surface.vertexAreas();
     Eigen::MatrixXd source = area * (4 * std::numbers::pi / area.sum());
@@ -98,7 +100,8 @@ Result<PuncturedPlane> mapPunctured(const IntrinsicTriangulation& surface,
     return out;
 }
 
-Result<int> triangleForOutside(const IntrinsicTriangulation& surface, const Eigen::SparseMatrix<double>& laplacian)
+Result<int> triangleForOutside(const IntrinsicTriangulation& surface,
+                               const Eigen::SparseMatrix<double>& laplacian)
 {
     const Eigen::VectorXd area = surface.vertexAreas();
     const Eigen::MatrixXd source = flatSource(surface) + area * (4 * std::numbers::pi / area.sum());

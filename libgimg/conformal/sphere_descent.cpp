@@ -36,8 +36,7 @@ Result<SparseMatrix> laplacianOf(const Mesh& mesh, SphereEnergy energy)
 
 Points alongSphere(const Points& at, Points vectors)
 {
-    for (Eigen::Index v = 0; v < at.rows(); ++v)
-        vectors.row(v) -= vectors.row(v).dot(at.row(v)) * at.row(v);
+    for (Eigen::Index v = 0; v < at.rows(); ++v) vectors.row(v) -= vectors.row(v).dot(at.row(v)) * at.row(v);
     return vectors;
 }
 
@@ -61,6 +60,24 @@ Status centre(const std::vector<double>& mass, Points& points)
     for (size_t v = 0; v < list.size(); ++v)
         points.row(static_cast<Eigen::Index>(v)) = (*centred)(list[v]).transpose();
     return Done{};
+}
+
+// Less the small boost that would move the mass centre as the vectors do.
+Points keepingCentre(const std::vector<double>& mass, const Points& at, Points vectors)
+{
+    Eigen::Matrix3d boosts = Eigen::Matrix3d::Zero();
+    Vec3 moved = Vec3::Zero();
+    for (Eigen::Index v = 0; v < at.rows(); ++v) {
+        const Vec3 p = at.row(v);
+        boosts += mass[v] * (Eigen::Matrix3d::Identity() - p * p.transpose());
+        moved += mass[v] * vectors.row(v).transpose();
+    }
+    const Vec3 boost = boosts.ldlt().solve(moved);
+    for (Eigen::Index v = 0; v < at.rows(); ++v) {
+        const Vec3 p = at.row(v);
+        vectors.row(v) -= (boost - p.dot(boost) * p).transpose();
+    }
+    return vectors;
 }
 
 } // namespace
@@ -87,7 +104,8 @@ Result<SphereDescent> descendOnSphere(const Mesh& mesh, const std::vector<Vec3>&
     Points at(mesh.vertexCount(), 3);
     for (int v = 0; v < mesh.vertexCount(); ++v) {
         if (!(std::abs(start[v].norm() - 1) < 1e-6))
-            return Error{ErrorKind::BadArgument, "the start of vertex " + std::to_string(v) + " is no unit vector"};
+            return Error{ErrorKind::BadArgument,
+                         "the start of vertex " + std::to_string(v) + " is no unit vector"};
         at.row(v) = start[v].normalized().transpose();
     }
     const Result<SparseMatrix> laplacian = laplacianOf(mesh, energy);
@@ -99,7 +117,7 @@ Result<SphereDescent> descendOnSphere(const Mesh& mesh, const std::vector<Vec3>&
     for (int v = 0; v < mesh.vertexCount(); ++v) preconditioner.coeffRef(v, v) += mass[v] / total;
     const DirichletSolver solver(preconditioner, std::vector<bool>(mesh.positions.size(), false));
     if (!solver.isSolvable())
-        return Error{ErrorKind::FlippedTriangle, "the linear system of the map could not be solved"};
+        return Error{ErrorKind::SolverFailure, "the linear system of the map could not be solved"};
 
     SphereDescent out;
     if (const Status centred = centre(mass, at); !centred) return centred.error();
@@ -111,21 +129,20 @@ Result<SphereDescent> descendOnSphere(const Mesh& mesh, const std::vector<Vec3>&
         const double slope = gradient.cwiseProduct(direction).sum();
         out.residual = std::sqrt(std::max(0.0, slope) / now);
         if (out.steps == options.mostSteps) break;
-        direction = alongSphere(at, direction);
+        direction = keepingCentre(mass, at, alongSphere(at, direction));
         Points tried;
         double lowered = now;
         for (step = std::min(1.0, 2 * step); step > 1e-6; step *= 0.5) {
             tried = (at - step * direction).rowwise().normalized();
+            if (const Status centred = centre(mass, tried); !centred) return centred.error();
             lowered = energyOf(*laplacian, tried);
-            if (lowered < now - 0.1 * step * slope) break;
+            if (lowered < now) break;
         }
         if (!(lowered < now)) break;
-        if (const Status centred = centre(mass, tried); !centred) return centred.error();
         at = tried;
         ++out.steps;
-        const double after = energyOf(*laplacian, at);
-        done = std::abs(now - after) < options.tolerance * now;
-        now = after;
+        done = now - lowered < options.tolerance * now;
+        now = lowered;
     }
     out.energy = now;
     out.map.position = listOf(at);

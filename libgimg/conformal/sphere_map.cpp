@@ -20,8 +20,8 @@ using SparseMatrix = Eigen::SparseMatrix<double>;
 constexpr double kCentred = 1e-9; // a mass centre nearer to the sphere's is left there
 
 // Limbs shrink by exp(-length / radius), below what coordinates of doubles can tell apart. Where the scale u
-// falls below `from`, weights times exp(steepness (u - from)) make it fall more slowly, `slowed` times: along a
-// tube of radius 1, f'' + steepness f' = f has solutions that decay by slowed = 1 / (slowed + steepness).
+// falls below `from`, weights times exp(steepness (u - from)) make it fall more slowly, `slowed` times: along
+// a tube of radius 1, f'' + steepness f' = f has solutions that decay by slowed = 1 / (slowed + steepness).
 struct Inflation
 {
     double from = 0;
@@ -38,10 +38,12 @@ Inflation neededInflation(Eigen::VectorXd& logScale, const Eigen::VectorXd& vert
     constexpr double kSteepest = 600;   // exponent that weights may fall to
     // The sphere has an area of 4 pi; the surface is taken to have that, too.
     const double highest = logScale.maxCoeff(), area = vertexArea.sum();
-    logScale.array() -= highest + 0.5 * std::log(vertexArea.dot((2 * (logScale.array() - highest)).exp().matrix()) / area);
+    logScale.array() -=
+        highest + 0.5 * std::log(vertexArea.dot((2 * (logScale.array() - highest)).exp().matrix()) / area);
     double smallest = 0;
     for (int v = 0; v < logScale.size(); ++v)
-        smallest = std::min(smallest, logScale[v] + 0.5 * std::log(vertexArea[v] * 4 * std::numbers::pi / area));
+        smallest =
+            std::min(smallest, logScale[v] + 0.5 * std::log(vertexArea[v] * 4 * std::numbers::pi / area));
     const double missing = std::log(kSmallest) - smallest, deepest = logScale.minCoeff();
     if (missing <= 0) return {};
     const double from = std::min(kShallowest, deepest + missing / (1 - kSlowest)), depth = from - deepest;
@@ -105,7 +107,8 @@ struct Equator
 Status makeCapHarmonic(const SparseMatrix& laplacian, const Vec3& pole, std::vector<Vec3>& position)
 {
     constexpr double kCap = -0.6; // height down to which it reaches
-    const Eigen::Matrix3d upright = Eigen::Quaterniond::FromTwoVectors(pole, Vec3::UnitZ()).toRotationMatrix();
+    const Eigen::Matrix3d upright =
+        Eigen::Quaterniond::FromTwoVectors(pole, Vec3::UnitZ()).toRotationMatrix();
     std::vector<bool> fixed;
     Eigen::MatrixXd plane(position.size(), 2);
     for (size_t v = 0; v < position.size(); ++v) {
@@ -117,7 +120,7 @@ Status makeCapHarmonic(const SparseMatrix& laplacian, const Vec3& pole, std::vec
     if (std::count(fixed.begin(), fixed.end(), true) < 3) return Done{};
     const DirichletSolver solver(laplacian, fixed);
     if (!solver.isSolvable())
-        return Error{ErrorKind::FlippedTriangle, "the linear system of the map could not be solved"};
+        return Error{ErrorKind::SolverFailure, "the linear system of the map could not be solved"};
     solver.solve(plane);
     for (size_t v = 0; v < position.size(); ++v) {
         const auto row = static_cast<Eigen::Index>(v);
@@ -148,7 +151,8 @@ public:
         bool clean = false;
         for (int round = 0; round < kTries && !clean; ++round) {
             if (const Status placed = place(); !placed) return placed.error();
-            clean = relaxation.untangle() && (!options_.centre || massCentre(map_.position, mass_).norm() < kCentred);
+            clean = relaxation.untangle() &&
+                    (!options_.centre || massCentre(map_.position, mass_).norm() < kCentred);
         }
         map_.untangled = relaxation.movedByUntangling();
         map_.massCentre = massCentre(map_.position, mass_);
@@ -202,8 +206,8 @@ private:
         return Done{};
     }
 
-    // Around the triangle that was outside, and around its antipode, where doubles were spread thin. A surface
-    // of few vertices may have a triangle that reaches across the cap, and is left as it is.
+    // Around the triangle that was outside, and around its antipode, where doubles were spread thin. A
+    // surface of few vertices may have a triangle that reaches across the cap, and is left as it is.
     Status improve(const SparseMatrix& laplacian, const Vec3& pole)
     {
         std::vector<Vec3> tried = map_.position;
@@ -211,7 +215,8 @@ private:
         const int before = flippedOnSphere(mesh_.faces, map_.position),
                   after = flippedOnSphere(mesh_.faces, tried);
         if (after <= before + mesh_.faceCount() / 1000 &&
-            conformality(mesh_, tried).medianAngleError <= conformality(mesh_, map_.position).medianAngleError)
+            conformality(mesh_, tried).medianAngleError <=
+                conformality(mesh_, map_.position).medianAngleError)
             map_.position = std::move(tried);
         return Done{};
     }

@@ -49,10 +49,10 @@ struct SphereRelaxation::Star
             const Vec2 dd = scale * axes.transpose() * dGradient, da = scale * axes.transpose() * aGradient;
             const double byArea = -d / (a * a); // of the quotient, by the counted area
             gradient += c.weight * (dd / a + byArea * slope * da);
-            hessian += c.weight * (0.5 * (c.cotLeft + c.cotRight) * scale * scale / a *
-                                       Eigen::Matrix2d::Identity() -
-                                   slope / (a * a) * (dd * da.transpose() + da * dd.transpose()) +
-                                   (2 * d / (a * a * a) * slope * slope + byArea * bend) * da * da.transpose());
+            hessian +=
+                c.weight * (0.5 * (c.cotLeft + c.cotRight) * scale * scale / a * Eigen::Matrix2d::Identity() -
+                            slope / (a * a) * (dd * da.transpose() + da * dd.transpose()) +
+                            (2 * d / (a * a * a) * slope * slope + byArea * bend) * da * da.transpose());
             outward += c.weight * (dGradient.dot(p) / a + byArea * slope * aGradient.dot(p));
         }
         hessian -= scale * scale * outward * Eigen::Matrix2d::Identity();
@@ -85,8 +85,8 @@ SphereRelaxation::SphereRelaxation(const Mesh& mesh, std::vector<Vec3>& position
     for (const Triangle& t : mesh.faces) {
         const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
         const double doubled = (b - a).cross(c - a).norm();
-        cotangent_.push_back({(b - a).dot(c - a) / doubled, (c - b).dot(a - b) / doubled,
-                              (a - c).dot(b - c) / doubled});
+        cotangent_.push_back(
+            {(b - a).dot(c - a) / doubled, (c - b).dot(a - b) / doubled, (a - c).dot(b - c) / doubled});
         area_.push_back(0.5 * doubled);
     }
 }

@@ -8,10 +8,10 @@
 namespace gimg {
 
 /// Moves the vertices of a map to the sphere one by one, each to where the triangles around it are nearest to
-/// those of the surface in shape: to the least sum of  area on the surface * (s/t + t/s) / 2  with the singular
-/// values s, t of the map on each triangle, which is infinite for triangles without area. (As Hormann and
-/// Greiner 2000, "MIPS: An efficient global parametrization method", but for area on the surface and the
-/// sphere: triangles are taken as flat, their area as det(a, b, c) / 2.)
+/// those of the surface in shape: to the least sum of  area on the surface * (s/t + t/s) / 2  with the
+/// singular values s, t of the map on each triangle, which is infinite for triangles without area. (As
+/// Hormann and Greiner 2000, "MIPS: An efficient global parametrization method", but for area on the surface
+/// and the sphere: triangles are taken as flat, their area as det(a, b, c) / 2.)
 class SphereRelaxation
 {
 public:
@@ -20,9 +20,10 @@ public:
     SphereRelaxation(const Mesh& mesh, std::vector<Vec3>& position);
 
     /// Moves vertices at flipped triangles and around them until no triangle is flipped, or nothing helps any
-    /// more. Returns whether none is. While some are flipped around a vertex, areas count as the positive root of
-    /// x^2 - area x - tolerance^2 / 4, with a tolerance that shrinks, so that energies are finite. Source:
-    /// Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov 2021, "Foldover-free maps in 50 lines of code".
+    /// more. Returns whether none is. While some are flipped around a vertex, areas count as the positive
+    /// root of x^2 - area x - tolerance^2 / 4, with a tolerance that shrinks, so that energies are finite.
+    /// Source: Garanzha, Kaporin, Kudryavtseva, Protais, Ray, Sokolov 2021, "Foldover-free maps in 50 lines
+    /// of code".
     bool untangle();
 
     /// Moves every vertex as often as told; no triangle that is not flipped becomes so.

@@ -22,12 +22,14 @@ enum class ErrorKind
     NotOrientable,     ///< no consistent orientation exists
     SeveralComponents, ///< more than one connected component
     NotADisk,          ///< a disk was required
-    NotASphere,        ///< a closed surface of genus 0 was required
-    DegenerateFace,    ///< a face without area
+    NotClosed,         ///< a surface without boundary was required
+    WrongGenus,        ///< the genus is not one that the call is for
+    ZeroAreaFace,      ///< a triangle without an area, or as thin as a double can tell
     FlippedTriangle,   ///< no embedding without flipped triangles was found
     TargetUnreachable, ///< no file meets the requested size or quality
     BadArgument,       ///< a parameter is outside its documented range
     CodecFailure,      ///< the decoder refused the bytes
+    SolverFailure,     ///< a linear system could not be solved
 };
 
 /// What went wrong, in one line fit for a terminal; names the element where there is one.

@@ -8,8 +8,8 @@
 
 namespace gimg {
 
-/// The Gauss map: every vertex to its unit normal. On a surface that is not convex it folds. Where a vertex has
-/// no normal, the direction from the surface's middle stands in. Source: thesis section 5.2.
+/// The Gauss map: every vertex to its unit normal. On a surface that is not convex it folds. Where a vertex
+/// has no normal, the direction from the surface's middle stands in. Source: thesis section 5.2.
 std::vector<Vec3> gaussMap(const Mesh& mesh);
 
 /// Sums over edges of weight |h(u) - h(v)|^2 / 2.
@@ -37,16 +37,15 @@ struct SphereDescent
     int steps = 0;
 };
 
-/// The thesis's way to the sphere, kept as a reference for sphereMap(): a barycentric or harmonic map by descent
-/// from any start, triangles folded or not. The gradient's part along the sphere is divided by the energy's own
-/// Laplacian, so that the number of steps does not grow with the mesh, and after each step a Moebius map brings
-/// the mass centre back. (Without that both energies fall to 0, all vertices in one point.) Nothing keeps
-/// triangles from flipping, and map.flipped says how many have.
+/// The thesis's way to the sphere, kept as a reference for sphereMap(): a barycentric or harmonic map by
+/// descent from any start, triangles folded or not. The gradient's part along the sphere is divided by the
+/// energy's own Laplacian, so that the number of steps does not grow with the mesh, and after each step a
+/// Moebius map brings the mass centre back. (Without that both energies fall to 0, all vertices in one
+/// point.) Nothing keeps triangles from flipping, and map.flipped says how many have.
 /// @param mesh   as for sphereMap()
 /// @param start  one unit vector per vertex
-/// Errors: those of sphereMap() for the mesh; BadArgument for the start, or if half of the mass comes to lie in
-/// one point.
-/// Source: thesis section 5.2, Algorithms 1 and 2; the Moebius map as centringMass().
+/// Errors: those of sphereMap() for the mesh; BadArgument for the start, or if half of the mass comes to lie
+/// in one point. Source: thesis section 5.2, Algorithms 1 and 2; the Moebius map as centringMass().
 Result<SphereDescent> descendOnSphere(const Mesh& mesh, const std::vector<Vec3>& start, SphereEnergy energy,
                                       const SphereDescentOptions& options = {});
 
