@@ -62,7 +62,7 @@ std::optional<int> parseArguments(int argc, char** argv, Arguments& a)
     std::map<std::string, MapKind> maps;
     for (MapKind kind : kMapKinds) maps[mapName(kind)] = kind;
     addChoice<MapKind>(app, "--param", maps, a.unfold.param,
-                       "stretch (even samples), or linear: mvc (mean values), tutte, conformal (harmonic)");
+                       "stretch (even samples), or linear: mvc (mean values), tutte, harmonic");
     addChoice<Density>(app, "--density", {{"curvature", Density::Curvature}, {"even", Density::Even}},
                        a.unfold.density, "samples: closer where the surface bends (curvature), or even");
     app.add_option("--extrema", a.unfold.extrema,

@@ -39,8 +39,8 @@ Result<Moebius> centringMass(const std::vector<Vec3>& points, const std::vector<
     constexpr double kCentred = 1e-12, kLongest = 0.9, kSure = 1e-3;
     Moebius total;
     std::vector<Vec3> moved = points;
-    const auto fail =
-        Error{ErrorKind::BadArgument, "more than half of the mass lies in one point: no Moebius map centres it"};
+    const auto fail = Error{ErrorKind::BadArgument,
+                            "more than half of the mass lies in one point: no Moebius map centres it"};
     for (int iteration = 0; iteration < kMost; ++iteration) {
         Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
         double sum = 0;
