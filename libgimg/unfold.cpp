@@ -47,9 +47,7 @@ public:
                 return Error{ErrorKind::TargetUnreachable, "no star of four paths opens this surface"};
             return octahedral(tips);
         }
-        if (type.genus == 1 && type.boundaries == 0 && options_.param == MapKind::Conformal &&
-            options_.layout == SquareLayout::Auto && !options_.extrema)
-            return conformalTorus();
+        if (options_.param == MapKind::Conformal) return conformalTorus();
         if (!sphere) return alongCut(extrema(FlattenEffort::Trial));
         if (options_.layout == SquareLayout::Cut || options_.extrema)
             return alongCut(extrema(FlattenEffort::Full));
@@ -95,6 +93,8 @@ private:
 
     Result<Unfolded> conformalTorus()
     {
+        if (options_.extrema)
+            return Error{ErrorKind::BadArgument, "a conformal map is not extended to extrema"};
         Result<TorusMap> torus = torusToSquare(mesh_, options_);
         if (!torus) return torus.error();
         return Unfolded{torus->square.cut, SquareLayout::Cut, 0, std::move(torus->square),

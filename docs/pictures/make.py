@@ -176,7 +176,7 @@ def stretch(studio):
 def maps(studio):
     """Every map to the square, on a part with the same cut and layout."""
     panels, captions = [], []
-    for param in ("tutte", "mvc", "conformal", "stretch"):
+    for param in ("tutte", "mvc", "harmonic", "stretch"):
         mesh, report = studio.mapped(studio.fetched("fandisk"), "--param", param, "--density", "even")
         view = View(mesh, turn(yaw=-60, pitch=20), 220, 222)
         panels.append(render(mesh, view, colours=stretch_colours(mesh.stretch), grid=1 / 32, smooth=False))

@@ -88,8 +88,8 @@ Result<Moebius> Moebius::byThreePoints(const std::array<Vec3, 3>& from, const st
     return *target * source->inverse();
 }
 
-// Along the z axis, z -> k z with k = (1 + |p|) / (1 - |p|) or the inverse; turned there and back, to the pole
-// that is nearer.
+// Along the z axis, z -> k z with k = (1 + |p|) / (1 - |p|) or the inverse; turned there and back, to the
+// pole that is nearer.
 Moebius Moebius::centring(const Vec3& p)
 {
     const double radius = p.norm();
@@ -100,8 +100,8 @@ Moebius Moebius::centring(const Vec3& p)
     return rotating(toAxis.transpose()) * Moebius(root, 0, 0, 1 / root) * rotating(toAxis);
 }
 
-// With the unit quaternion w + x i + y j + z k: a rotation by t about the vertical multiplies by exp(i t), one
-// by t about x takes 0 to -i tan(t / 2), one about y takes it to tan(t / 2).
+// With the unit quaternion w + x i + y j + z k: a rotation by t about the vertical multiplies by exp(i t),
+// one by t about x takes 0 to -i tan(t / 2), one about y takes it to tan(t / 2).
 Moebius Moebius::rotating(const Eigen::Matrix3d& rotation)
 {
     const Eigen::Quaterniond q(rotation);

@@ -31,15 +31,16 @@ Vec3 massCentre(const std::vector<Vec3>& points, const std::vector<double>& mass
     return sum / total;
 }
 
-// Centring by a small c moves p by -2 c + 2 (p.c) p: from this comes Newton's step, after which all points are
-// moved and the next one begins in the centre again.
+// Centring by a small c moves p by -2 c + 2 (p.c) p: from this comes Newton's step, after which all points
+// are moved and the next one begins in the centre again.
 Result<Moebius> centringMass(const std::vector<Vec3>& points, const std::vector<double>& mass)
 {
     constexpr int kMost = 200;
     constexpr double kCentred = 1e-12, kLongest = 0.9, kSure = 1e-3;
     Moebius total;
     std::vector<Vec3> moved = points;
-    const auto fail = Error{ErrorKind::BadArgument, "half of the mass lies in one point: no Moebius map centres it"};
+    const auto fail = Error{ErrorKind::BadArgument,
+                            "more than half of the mass lies in one point: no Moebius map centres it"};
     for (int iteration = 0; iteration < kMost; ++iteration) {
         Eigen::Matrix3d hessian = Eigen::Matrix3d::Zero();
         double sum = 0;
@@ -76,7 +77,8 @@ Eigen::Matrix3d bestRotation(const std::vector<Vec3>& from, const std::vector<Ve
     return svd.matrixU() * sign.asDiagonal() * svd.matrixV().transpose();
 }
 
-// Gauss-Newton in the six directions of the group: rotations by w move p by w x p, boosts by b by b - (p.b) p.
+// Gauss-Newton in the six directions of the group: rotations by w move p by w x p, boosts by b by b - (p.b)
+// p.
 Result<Moebius> bestMoebius(const std::vector<Vec3>& from, const std::vector<Vec3>& to)
 {
     if (from.size() != to.size() || from.size() < 3)

@@ -9,20 +9,15 @@
 namespace gimg {
 namespace {
 
-const Error kUnsolvable{ErrorKind::FlippedTriangle, "the linear system of the map could not be solved"};
+const Error kUnsolvable{ErrorKind::SolverFailure, "the linear system of the map could not be solved"};
 
-// Of the triangles with three different corners, that with the largest scale.
-int outsideFace(const IntrinsicTriangulation& surface, const Eigen::VectorXd& logScale)
+// Less the curvature of each vertex: what the Laplacian of the logarithm of the scale is where the metric
+// becomes flat.
+Eigen::VectorXd flatSource(const IntrinsicTriangulation& surface)
 {
-    int best = -1;
-    double most = 0;
-    for (int h = 0; h < surface.halfedgeCount(); ++h) {
-        const int a = surface.tail(h), b = surface.head(h), c = surface.tail(surface.prev(h));
-        if (a == b || b == c || c == a) continue;
-        const double scale = logScale[a] + logScale[b] + logScale[c];
-        if (best < 0 || scale > most) best = h, most = scale;
-    }
-    return best;
+    Eigen::VectorXd source = Eigen::VectorXd::Constant(surface.vertexCount(), -2 * std::numbers::pi);
+    for (int h = 0; h < surface.halfedgeCount(); ++h) source[surface.tail(h)] += surface.angle(h);
+    return source;
 }
 
 // By z -> z + k conj(z), which keeps harmonic functions and orientation (|k| < 1), to where the mean over the
@@ -38,7 +33,8 @@ void makeConformal(const IntrinsicTriangulation& surface, std::vector<std::compl
             if (h > surface.next(h) || h > surface.prev(h)) continue; // once a face
             // Corners of the face at 0, l and p in the plane.
             const double l = surface.length(h), q = surface.length(surface.prev(h)), angle = surface.angle(h);
-            const std::complex<double> p = std::polar(q, angle), edge = z[surface.head(h)] - z[surface.tail(h)],
+            const std::complex<double> p = std::polar(q, angle),
+                                       edge = z[surface.head(h)] - z[surface.tail(h)],
                                        other = z[surface.tail(surface.prev(h))] - z[surface.tail(h)];
             // edge = l (f_z + f_zbar), other = p f_z + conj(p) f_zbar.
             const std::complex<double> along = edge / l;
@@ -59,7 +55,8 @@ void makeConformal(const IntrinsicTriangulation& surface, std::vector<std::compl
 
 } // namespace
 
-Result<Eigen::VectorXd> logScales(const IntrinsicTriangulation& surface, const Eigen::SparseMatrix<double>& laplacian)
+Result<Eigen::VectorXd> logScales(const IntrinsicTriangulation& surface,
+                                  const Eigen::SparseMatrix<double>& laplacian)
 {
     const Eigen::VectorXd area = surface.vertexAreas();
     Eigen::MatrixXd source = area * (4 * std::numbers::pi / area.sum());
@@ -78,28 +75,52 @@ Result<Eigen::VectorXd> logScales(const IntrinsicTriangulation& surface, const E
 
 // Whatever shape the outer triangle has, the others differ by affine maps of the plane.
 Result<PuncturedPlane> mapPunctured(const IntrinsicTriangulation& surface,
-                                    const Eigen::SparseMatrix<double>& laplacian,
-                                    const Eigen::VectorXd& logScale)
+                                    const Eigen::SparseMatrix<double>& laplacian, int outside)
 {
-    int h = outsideFace(surface, logScale);
-    if (h < 0) return kUnsolvable;
-    PuncturedPlane out;
-    out.outside = surface.tail(h);
-    std::vector<bool> fixed(static_cast<size_t>(surface.vertexCount()), false);
-    Eigen::MatrixXd place = Eigen::MatrixXd::Zero(surface.vertexCount(), 2);
+    const int count = surface.vertexCount();
+    std::vector<bool> fixed(static_cast<size_t>(count), false);
+    Eigen::MatrixXd values = Eigen::MatrixXd::Zero(count, 3), source = values; // x, y, scale
+    source.col(2) = flatSource(surface);
+    int h = outside;
     for (int k = 0; k < 3; ++k, h = surface.next(h)) {
         // Clockwise, since the surface lies inside and the triangle outside.
         const double turn = -2 * std::numbers::pi * k / 3;
-        place.row(surface.tail(h)) << std::cos(turn), std::sin(turn);
+        values.row(surface.tail(h)) << std::cos(turn), std::sin(turn), 0;
         fixed[surface.tail(h)] = true;
     }
     const DirichletSolver solver(laplacian, fixed);
     if (!solver.isSolvable()) return kUnsolvable;
-    solver.solve(place);
-    if (!place.allFinite()) return kUnsolvable;
-    for (int v = 0; v < surface.vertexCount(); ++v) out.z.emplace_back(place(v, 0), place(v, 1));
+    solver.solve(values, source);
+    if (!values.allFinite()) return kUnsolvable;
+    PuncturedPlane out;
+    out.outside = outside;
+    out.logScale = values.col(2);
+    for (int v = 0; v < count; ++v) out.z.emplace_back(values(v, 0), values(v, 1));
     makeConformal(surface, out.z);
     return out;
+}
+
+Result<int> triangleForOutside(const IntrinsicTriangulation& surface,
+                               const Eigen::SparseMatrix<double>& laplacian)
+{
+    const Eigen::VectorXd area = surface.vertexAreas();
+    const Eigen::MatrixXd source = flatSource(surface) + area * (4 * std::numbers::pi / area.sum());
+    Eigen::MatrixXd logScale = Eigen::MatrixXd::Zero(surface.vertexCount(), 1);
+    std::vector<bool> fixed(static_cast<size_t>(surface.vertexCount()), false);
+    fixed[0] = true;
+    const DirichletSolver solver(laplacian, fixed);
+    if (!solver.isSolvable()) return kUnsolvable;
+    solver.solve(logScale, source);
+    int best = -1;
+    double most = 0;
+    for (int h = 0; h < surface.halfedgeCount(); ++h) {
+        const int a = surface.tail(h), b = surface.head(h), c = surface.tail(surface.prev(h));
+        if (a == b || b == c || c == a) continue;
+        const double scale = logScale(a, 0) + logScale(b, 0) + logScale(c, 0);
+        if (best < 0 || scale > most) best = h, most = scale;
+    }
+    if (best < 0) return kUnsolvable;
+    return best;
 }
 
 } // namespace gimg

@@ -10,28 +10,30 @@
 
 namespace gimg {
 
-/// The logarithm u of the factor by which lengths change when the surface's curvature is spread evenly over
-/// its area, without bending angles: L u = 4 pi M_i / sum M - (2 pi - angles at i). Its mean is 0. Along limbs
-/// it falls by about their length over their radius.
-/// Errors: FlippedTriangle if the linear system cannot be solved.
-Result<Eigen::VectorXd> logScales(const IntrinsicTriangulation& surface,
-                                  const Eigen::SparseMatrix<double>& laplacian);
-
 /// A closed surface of genus 0 in the plane, but for one triangle, which is the outside.
 struct PuncturedPlane
 {
     std::vector<std::complex<double>> z; ///< of every vertex
-    int outside = 0;                     ///< a vertex of that triangle
+    int outside = 0;                     ///< a halfedge of that triangle
+    Eigen::VectorXd logScale; ///< per vertex: of plane over surface, as a conformal map would have it;
+                              ///< all up to one constant. No less exact where limbs shrink to nothing.
 };
+
+/// A halfedge of a triangle of the surface that is large on the sphere: where the logarithm of the scale is
+/// largest for the metric without bent angles whose curvature is spread evenly over the surface's area.
+/// Errors: SolverFailure if the linear system cannot be solved.
+Result<int> triangleForOutside(const IntrinsicTriangulation& surface,
+                               const Eigen::SparseMatrix<double>& laplacian);
 
 /// The discrete conformal map of the surface without a triangle to the plane, where that triangle lies around
 /// it: vertices are at the means of their neighbours, and of the affine images of that the most conformal one
-/// is taken. With positive weights it cannot fold (Tutte 1963). The triangle is one with a large scale.
-/// Errors: FlippedTriangle if the linear system cannot be solved.
+/// is taken. With positive weights it cannot fold (Tutte 1963).
+/// @param laplacian  its weights are those of the means
+/// @param outside    a halfedge of a triangle with three different corners
+/// Errors: SolverFailure if the linear system cannot be solved.
 /// Source: Haker, Angenent, Tannenbaum, Kikinis, Sapiro, Halle 2000, "Conformal surface parameterization for
 /// texture mapping"; the affine map is our own, see docs/sphere.md.
 Result<PuncturedPlane> mapPunctured(const IntrinsicTriangulation& surface,
-                                    const Eigen::SparseMatrix<double>& laplacian,
-                                    const Eigen::VectorXd& logScale);
+                                    const Eigen::SparseMatrix<double>& laplacian, int outside);
 
 } // namespace gimg

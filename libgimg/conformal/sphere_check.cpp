@@ -17,11 +17,12 @@ Status checkAreas(const Mesh& mesh)
     for (int f = 0; f < mesh.faceCount(); ++f) {
         const auto [a, b, c] = mesh.faces[f];
         const Vec3 &p = mesh.positions[a], &q = mesh.positions[b], &r = mesh.positions[c];
-        const double longest = std::max({(q - p).squaredNorm(), (r - q).squaredNorm(), (p - r).squaredNorm()});
+        const double longest =
+            std::max({(q - p).squaredNorm(), (r - q).squaredNorm(), (p - r).squaredNorm()});
         if (a == b || b == c || c == a || !((q - p).cross(r - p).norm() > kLeastHeight * longest))
-            return Error{ErrorKind::DegenerateFace, "face " + std::to_string(f) + " (vertices " +
-                                                        std::to_string(a) + ", " + std::to_string(b) + ", " +
-                                                        std::to_string(c) + ") has no area"};
+            return Error{ErrorKind::ZeroAreaFace, "face " + std::to_string(f) + " (vertices " +
+                                                      std::to_string(a) + ", " + std::to_string(b) + ", " +
+                                                      std::to_string(c) + ") has no area"};
     }
     return Done{};
 }
@@ -33,9 +34,9 @@ Status checkManifold(const Mesh& mesh, const Halfedges& he)
         ++valence[he.tail(h)];
         const int twin = he.twin(h);
         if (twin >= 0 && he.twin(twin) != h)
-            return Error{ErrorKind::NonManifoldEdge, "edge " + std::to_string(he.tail(h)) + "-" +
-                                                         std::to_string(he.head(h)) +
-                                                         " is not one of two faces that run along it both ways"};
+            return Error{ErrorKind::NonManifoldEdge,
+                         "edge " + std::to_string(he.tail(h)) + "-" + std::to_string(he.head(h)) +
+                             " is not one of two faces that run along it both ways"};
     }
     for (int v = 0; v < mesh.vertexCount(); ++v) {
         if (valence[v] == 0)
@@ -85,14 +86,15 @@ Status checkSphere(const Mesh& mesh)
     int open = 0;
     for (int h = 0; h < he.count(); ++h) open += he.onBoundary(h);
     if (open > 0)
-        return Error{ErrorKind::NotASphere, "the surface is not closed: it has " + std::to_string(open) +
-                                                " boundary edges"};
+        return Error{ErrorKind::NotClosed,
+                     "the surface is not closed: it has " + std::to_string(open) + " boundary edges"};
     if (const Status manifold = checkManifold(mesh, he); !manifold) return manifold.error();
     if (const int count = components(mesh, he); count > 1)
-        return Error{ErrorKind::SeveralComponents, "the surface has " + std::to_string(count) + " components"};
+        return Error{ErrorKind::SeveralComponents,
+                     "the surface has " + std::to_string(count) + " components"};
     if (const int genus = topology(mesh).genus; genus != 0)
-        return Error{ErrorKind::NotASphere, "the surface has genus " + std::to_string(genus) +
-                                                "; only genus 0 maps to the sphere"};
+        return Error{ErrorKind::WrongGenus,
+                     "the surface has genus " + std::to_string(genus) + "; only genus 0 maps to the sphere"};
     return Done{};
 }
 

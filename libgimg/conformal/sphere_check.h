@@ -6,8 +6,8 @@
 namespace gimg {
 
 /// Whether a mesh is one closed, oriented, manifold surface of genus 0, of faces with an area. Errors:
-/// EmptyMesh, BadArgument (indices, a vertex in no face), NotFinite, DegenerateFace, NonManifoldEdge,
-/// NonManifoldVertex, SeveralComponents, NotASphere (boundary loops, genus).
+/// EmptyMesh, BadArgument (indices, a vertex in no face), NotFinite, ZeroAreaFace, NonManifoldEdge,
+/// NonManifoldVertex, SeveralComponents, NotClosed, WrongGenus.
 Status checkSphere(const Mesh& mesh);
 
 } // namespace gimg

@@ -17,11 +17,11 @@ namespace {
 using Complex = std::complex<double>;
 using SparseMatrix = Eigen::SparseMatrix<double>;
 
-constexpr double kCentred = 1e-9; // what moves the mass centre less than that needs no centring after it
+constexpr double kCentred = 1e-9; // a mass centre nearer to the sphere's is left there
 
 // Limbs shrink by exp(-length / radius), below what coordinates of doubles can tell apart. Where the scale u
-// falls below `from`, weights times exp(steepness (u - from)) make it fall more slowly, `slowed` times: along a
-// tube of radius 1, f'' + steepness f' = f has solutions that decay by slowed = 1 / (slowed + steepness).
+// falls below `from`, weights times exp(steepness (u - from)) make it fall more slowly, `slowed` times: along
+// a tube of radius 1, f'' + steepness f' = f has solutions that decay by slowed = 1 / (slowed + steepness).
 struct Inflation
 {
     double from = 0;
@@ -29,24 +29,26 @@ struct Inflation
     double steepness() const { return 1 / slowed - slowed; }
 };
 
-Inflation neededInflation(const Eigen::VectorXd& logScale, const Eigen::VectorXd& vertexArea)
+// @param logScale  of the sphere over the surface, up to a constant
+Inflation neededInflation(Eigen::VectorXd& logScale, const Eigen::VectorXd& vertexArea)
 {
-    constexpr double kSmallest = 1e-11;  // triangle on the sphere, as the root of its area
-    constexpr double kShallowest = -12;  // where conformality may be given up
-    constexpr double kSlowest = 0.3;     // preferred
-    constexpr double kSteepest = 600;    // exponent that weights may fall to
+    constexpr double kSmallest = 3e-14; // triangle on the sphere, as the root of its area
+    constexpr double kShallowest = -12; // where conformality may be given up
+    constexpr double kSlowest = 0.3;    // preferred
+    constexpr double kSteepest = 600;   // exponent that weights may fall to
+    // The sphere has an area of 4 pi; the surface is taken to have that, too.
+    const double highest = logScale.maxCoeff(), area = vertexArea.sum();
+    logScale.array() -=
+        highest + 0.5 * std::log(vertexArea.dot((2 * (logScale.array() - highest)).exp().matrix()) / area);
     double smallest = 0;
     for (int v = 0; v < logScale.size(); ++v)
-        smallest = std::min(smallest,
-                            logScale[v] + 0.5 * std::log(vertexArea[v] * 4 * std::numbers::pi / vertexArea.sum()));
+        smallest =
+            std::min(smallest, logScale[v] + 0.5 * std::log(vertexArea[v] * 4 * std::numbers::pi / area));
     const double missing = std::log(kSmallest) - smallest, deepest = logScale.minCoeff();
-    Inflation inflation;
-    if (missing <= 0) return inflation;
-    inflation.from = std::min(kShallowest, deepest + missing / (1 - kSlowest));
-    const double depth = inflation.from - deepest;
+    if (missing <= 0) return {};
+    const double from = std::min(kShallowest, deepest + missing / (1 - kSlowest)), depth = from - deepest;
     if (!(depth > 0)) return {};
-    inflation.slowed = std::max({1 - missing / depth, depth / kSteepest, 0.01});
-    return inflation;
+    return {from, std::max({1 - missing / depth, depth / kSteepest, 0.01})};
 }
 
 // The cotangent Laplacian, with smaller weights in limbs that need it.
@@ -82,37 +84,31 @@ double weightedMedian(std::vector<std::pair<double, double>> valueAndWeight)
     return 0;
 }
 
-// Half of the surface within the circle that becomes the equator.
-std::vector<Vec3> fromPlane(const std::vector<Complex>& plane, const std::vector<double>& mass)
+// Half of the surface lies within the circle that becomes the equator.
+struct Equator
 {
-    const auto median = [&](auto measured) {
-        std::vector<std::pair<double, double>> values;
-        for (size_t v = 0; v < plane.size(); ++v) values.push_back({measured(plane[v]), mass[v]});
-        return weightedMedian(std::move(values));
-    };
-    const Complex centre(median([](Complex z) { return z.real(); }), median([](Complex z) { return z.imag(); }));
-    const double radius = median([&](Complex z) { return std::abs(z - centre); });
-    std::vector<Vec3> position;
-    for (const Complex& z : plane) position.push_back(ontoSphere((z - centre) / radius));
-    return position;
-}
+    Complex centre;
+    double radius = 1;
 
-std::vector<double> vertexMasses(const Mesh& mesh)
-{
-    std::vector<double> mass(mesh.positions.size(), 0);
-    for (const Triangle& t : mesh.faces) {
-        const Vec3& p = mesh.positions[t[0]];
-        const double area = 0.5 * (mesh.positions[t[1]] - p).cross(mesh.positions[t[2]] - p).norm();
-        for (int v : t) mass[v] += area / 3;
+    Equator(const std::vector<Complex>& plane, const std::vector<double>& mass)
+    {
+        const auto median = [&](auto measured) {
+            std::vector<std::pair<double, double>> values;
+            for (size_t v = 0; v < plane.size(); ++v) values.push_back({measured(plane[v]), mass[v]});
+            return weightedMedian(std::move(values));
+        };
+        centre = {median([](Complex z) { return z.real(); }), median([](Complex z) { return z.imag(); })};
+        radius = median([&](Complex z) { return std::abs(z - centre); });
     }
-    return mass;
-}
+    Complex operator()(const Complex& z) const { return (z - centre) / radius; }
+};
 
 // Harmonic in the stereographic plane over the cap around `pole`, with what lies beyond it held.
 Status makeCapHarmonic(const SparseMatrix& laplacian, const Vec3& pole, std::vector<Vec3>& position)
 {
     constexpr double kCap = -0.6; // height down to which it reaches
-    const Eigen::Matrix3d upright = Eigen::Quaterniond::FromTwoVectors(pole, Vec3::UnitZ()).toRotationMatrix();
+    const Eigen::Matrix3d upright =
+        Eigen::Quaterniond::FromTwoVectors(pole, Vec3::UnitZ()).toRotationMatrix();
     std::vector<bool> fixed;
     Eigen::MatrixXd plane(position.size(), 2);
     for (size_t v = 0; v < position.size(); ++v) {
@@ -124,7 +120,7 @@ Status makeCapHarmonic(const SparseMatrix& laplacian, const Vec3& pole, std::vec
     if (std::count(fixed.begin(), fixed.end(), true) < 3) return Done{};
     const DirichletSolver solver(laplacian, fixed);
     if (!solver.isSolvable())
-        return Error{ErrorKind::FlippedTriangle, "the linear system of the map could not be solved"};
+        return Error{ErrorKind::SolverFailure, "the linear system of the map could not be solved"};
     solver.solve(plane);
     for (size_t v = 0; v < position.size(); ++v) {
         const auto row = static_cast<Eigen::Index>(v);
@@ -155,7 +151,8 @@ public:
         bool clean = false;
         for (int round = 0; round < kTries && !clean; ++round) {
             if (const Status placed = place(); !placed) return placed.error();
-            clean = relaxation.untangle() && (!options_.centre || massCentre(map_.position, mass_).norm() < kCentred);
+            clean = relaxation.untangle() &&
+                    (!options_.centre || massCentre(map_.position, mass_).norm() < kCentred);
         }
         map_.untangled = relaxation.movedByUntangling();
         map_.massCentre = massCentre(map_.position, mass_);
@@ -184,26 +181,33 @@ private:
         surface->makeDelaunay();
         tell(0.1);
         const SparseMatrix cotangents = surface->cotangentLaplacian();
-        const Result<Eigen::VectorXd> logScale = logScales(*surface, cotangents);
-        if (!logScale) return logScale.error();
-        const Inflation inflation = neededInflation(*logScale, surface->vertexAreas());
-        if (inflation.slowed < 1)
-            map_.inflated = static_cast<int>((logScale->array() < inflation.from).count());
-        const SparseMatrix laplacian = inflatedLaplacian(cotangents, *logScale, inflation);
+        const Result<int> outside = triangleForOutside(*surface, cotangents);
+        if (!outside) return outside.error();
         tell(0.2);
-        const Result<PuncturedPlane> plane = mapPunctured(*surface, laplacian, *logScale);
+        Result<PuncturedPlane> plane = mapPunctured(*surface, cotangents, *outside);
         if (!plane) return plane.error();
-        map_.position = fromPlane(plane->z, mass_);
+        Eigen::VectorXd logScale = plane->logScale;
+        const Equator equator(plane->z, mass_);
+        for (int v = 0; v < logScale.size(); ++v) logScale[v] -= std::log1p(std::norm(equator(plane->z[v])));
+        const Inflation inflation = neededInflation(logScale, surface->vertexAreas());
+        const SparseMatrix laplacian = inflatedLaplacian(cotangents, logScale, inflation);
+        if (inflation.slowed < 1) {
+            map_.inflated = static_cast<int>((logScale.array() < inflation.from).count());
+            plane = mapPunctured(*surface, laplacian, *outside);
+            if (!plane) return plane.error();
+        }
+        const Equator settled(plane->z, mass_);
+        for (const Complex& z : plane->z) map_.position.push_back(ontoSphere(settled(z)));
         if (const Status placed = centre(); !placed) return placed.error();
         tell(0.4);
-        const Vec3 pole = map_.position[plane->outside];
+        const Vec3 pole = map_.position[surface->tail(*outside)];
         for (const Vec3& side : {pole, Vec3(-pole)})
             if (const Status solved = improve(laplacian, side); !solved) return solved.error();
         return Done{};
     }
 
-    // Around the triangle that was outside, and around its antipode, where doubles were spread thin. A surface
-    // of few vertices may have a triangle that reaches across the cap, and is left as it is.
+    // Around the triangle that was outside, and around its antipode, where doubles were spread thin. A
+    // surface of few vertices may have a triangle that reaches across the cap, and is left as it is.
     Status improve(const SparseMatrix& laplacian, const Vec3& pole)
     {
         std::vector<Vec3> tried = map_.position;
@@ -211,7 +215,8 @@ private:
         const int before = flippedOnSphere(mesh_.faces, map_.position),
                   after = flippedOnSphere(mesh_.faces, tried);
         if (after <= before + mesh_.faceCount() / 1000 &&
-            conformality(mesh_, tried).medianAngleError <= conformality(mesh_, map_.position).medianAngleError)
+            conformality(mesh_, tried).medianAngleError <=
+                conformality(mesh_, map_.position).medianAngleError)
             map_.position = std::move(tried);
         return Done{};
     }
@@ -251,6 +256,17 @@ private:
 };
 
 } // namespace
+
+std::vector<double> vertexMasses(const Mesh& mesh)
+{
+    std::vector<double> mass(mesh.positions.size(), 0);
+    for (const Triangle& t : mesh.faces) {
+        const Vec3& p = mesh.positions[t[0]];
+        const double area = 0.5 * (mesh.positions[t[1]] - p).cross(mesh.positions[t[2]] - p).norm();
+        for (int v : t) mass[v] += area / 3;
+    }
+    return mass;
+}
 
 Result<SphereMap> sphereMap(const Mesh& mesh, const SphereMapOptions& options, const Progress& progress)
 {

@@ -74,7 +74,8 @@ int sphereOrientation(const Vec3& a, const Vec3& b, const Vec3& c)
 int flippedOnSphere(const std::vector<Triangle>& faces, const std::vector<Vec3>& position)
 {
     int count = 0;
-    for (const Triangle& t : faces) count += sphereOrientation(position[t[0]], position[t[1]], position[t[2]]) <= 0;
+    for (const Triangle& t : faces)
+        count += sphereOrientation(position[t[0]], position[t[1]], position[t[2]]) <= 0;
     return count;
 }
 

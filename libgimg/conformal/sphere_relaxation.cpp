@@ -49,10 +49,10 @@ struct SphereRelaxation::Star
             const Vec2 dd = scale * axes.transpose() * dGradient, da = scale * axes.transpose() * aGradient;
             const double byArea = -d / (a * a); // of the quotient, by the counted area
             gradient += c.weight * (dd / a + byArea * slope * da);
-            hessian += c.weight * (0.5 * (c.cotLeft + c.cotRight) * scale * scale / a *
-                                       Eigen::Matrix2d::Identity() -
-                                   slope / (a * a) * (dd * da.transpose() + da * dd.transpose()) +
-                                   (2 * d / (a * a * a) * slope * slope + byArea * bend) * da * da.transpose());
+            hessian +=
+                c.weight * (0.5 * (c.cotLeft + c.cotRight) * scale * scale / a * Eigen::Matrix2d::Identity() -
+                            slope / (a * a) * (dd * da.transpose() + da * dd.transpose()) +
+                            (2 * d / (a * a * a) * slope * slope + byArea * bend) * da * da.transpose());
             outward += c.weight * (dGradient.dot(p) / a + byArea * slope * aGradient.dot(p));
         }
         hessian -= scale * scale * outward * Eigen::Matrix2d::Identity();
@@ -79,13 +79,14 @@ private:
 };
 
 SphereRelaxation::SphereRelaxation(const Mesh& mesh, std::vector<Vec3>& position)
-    : mesh_(mesh), he_(mesh.faces, mesh.vertexCount()), position_(position)
+    : mesh_(mesh), he_(mesh.faces, mesh.vertexCount()), position_(position),
+      hasMoved_(mesh.positions.size(), false)
 {
     for (const Triangle& t : mesh.faces) {
         const Vec3 &a = mesh.positions[t[0]], &b = mesh.positions[t[1]], &c = mesh.positions[t[2]];
         const double doubled = (b - a).cross(c - a).norm();
-        cotangent_.push_back({(b - a).dot(c - a) / doubled, (c - b).dot(a - b) / doubled,
-                              (a - c).dot(b - c) / doubled});
+        cotangent_.push_back(
+            {(b - a).dot(c - a) / doubled, (c - b).dot(a - b) / doubled, (a - c).dot(b - c) / doubled});
         area_.push_back(0.5 * doubled);
     }
 }
@@ -109,8 +110,7 @@ bool SphereRelaxation::starIsValid(int v) const
 bool SphereRelaxation::relax(int v, double tolerance)
 {
     constexpr int kIterations = 3;
-    thread_local Star star;
-    star.corners.clear();
+    Star star;
     double weights = 0, areas = 0, squares = 0;
     int h = he_.outgoing(v);
     do {
@@ -170,6 +170,48 @@ bool SphereRelaxation::relax(int v, double tolerance)
     return true;
 }
 
+// To the middle of where no triangle around it is flipped: the kernel of its neighbours' polygon, in the
+// gnomonic plane, where great circles are straight.
+bool SphereRelaxation::moveToKernel(int v)
+{
+    const Vec3 before = position_[v];
+    Eigen::Matrix<double, 3, 2> axes;
+    axes.col(0) = before.unitOrthogonal();
+    axes.col(1) = before.cross(axes.col(0));
+    std::vector<Vec2> ring;
+    int h = he_.outgoing(v);
+    do {
+        const Vec3& q = position_[he_.head(h)];
+        if (!(q.dot(before) > 0)) return false;
+        ring.push_back(axes.transpose() * (q - before) / q.dot(before));
+        h = he_.rotateCcw(h);
+    } while (h != he_.outgoing(v));
+    Vec2 low = ring[0], high = ring[0];
+    for (const Vec2& p : ring) low = low.cwiseMin(p), high = high.cwiseMax(p);
+    std::vector<Vec2> kernel{low, {high.x(), low.y()}, high, {low.x(), high.y()}};
+    for (size_t i = 0; i < ring.size(); ++i) {
+        const Vec2 &from = ring[i], along = ring[(i + 1) % ring.size()] - from;
+        const auto leftOf = [&](const Vec2& p) {
+            return along.x() * (p.y() - from.y()) - along.y() * (p.x() - from.x());
+        };
+        std::vector<Vec2> kept;
+        for (size_t k = 0; k < kernel.size(); ++k) {
+            const Vec2 &p = kernel[k], &q = kernel[(k + 1) % kernel.size()];
+            const double atP = leftOf(p), atQ = leftOf(q);
+            if (atP >= 0) kept.push_back(p);
+            if ((atP > 0 && atQ < 0) || (atP < 0 && atQ > 0)) kept.push_back(p + atP / (atP - atQ) * (q - p));
+        }
+        if (kept.size() < 3) return false;
+        kernel = std::move(kept);
+    }
+    Vec2 middle = Vec2::Zero();
+    for (const Vec2& corner : kernel) middle += corner / static_cast<double>(kernel.size());
+    position_[v] = (before + axes * middle).normalized();
+    if (starIsValid(v)) return true;
+    position_[v] = before;
+    return false;
+}
+
 std::vector<int> SphereRelaxation::flippedFaces() const
 {
     std::vector<int> flipped;
@@ -185,29 +227,52 @@ void SphereRelaxation::smooth(int sweeps)
             if (starIsValid(v)) relax(v, 0);
 }
 
+// The corners of faces, and so many rings of vertices around them.
+std::vector<int> SphereRelaxation::verticesAround(const std::vector<int>& faces, int rings) const
+{
+    std::vector<bool> isIn(mesh_.positions.size(), false);
+    for (int f : faces)
+        for (int v : mesh_.faces[f]) isIn[v] = true;
+    for (int ring = 0; ring < rings; ++ring) {
+        const std::vector<bool> inner = isIn;
+        for (const Triangle& t : mesh_.faces)
+            if (inner[t[0]] || inner[t[1]] || inner[t[2]])
+                for (int v : t) isIn[v] = true;
+    }
+    std::vector<int> vertices;
+    for (int v = 0; v < mesh_.vertexCount(); ++v)
+        if (isIn[v]) vertices.push_back(v);
+    return vertices;
+}
+
+// Energies of flipped triangles can have minima, if shallow ones, where the kernel is not.
+bool SphereRelaxation::untangle(int v, double tolerance)
+{
+    if (starIsValid(v) || moveToKernel(v)) return relax(v, 0);
+    return relax(v, tolerance);
+}
+
+int SphereRelaxation::movedByUntangling() const
+{
+    return static_cast<int>(std::count(hasMoved_.begin(), hasMoved_.end(), true));
+}
+
 bool SphereRelaxation::untangle()
 {
-    constexpr int kRounds = 12, kSweeps = 12, kFirstRings = 1;
+    constexpr int kSweeps = 12, kPatience = 5;
+    constexpr double kShrink = 0.6; // of the tolerance, from sweep to sweep
     std::vector<int> flipped = flippedFaces();
-    std::vector<bool> hasMoved(static_cast<size_t>(mesh_.vertexCount()), false);
-    for (int round = 0; round < kRounds && !flipped.empty(); ++round) {
-        // Those at flipped triangles, and as many rings around them as rounds were in vain.
-        std::vector<bool> isFree(static_cast<size_t>(mesh_.vertexCount()), false);
-        for (int f : flipped)
-            for (int v : mesh_.faces[f]) isFree[v] = true;
-        for (int ring = 0; ring < kFirstRings + round / 2; ++ring) {
-            const std::vector<bool> inner = isFree;
-            for (const Triangle& t : mesh_.faces)
-                if (inner[t[0]] || inner[t[1]] || inner[t[2]])
-                    for (int v : t) isFree[v] = true;
-        }
+    size_t fewest = flipped.size();
+    for (int inVain = 0; !flipped.empty() && inVain < kPatience;) {
+        const std::vector<int> around = verticesAround(flipped, 1 + inVain / 2);
         double tolerance = 1;
-        for (int sweep = 0; sweep < kSweeps; ++sweep, tolerance *= 0.6)
-            for (int v = 0; v < mesh_.vertexCount(); ++v)
-                if (isFree[v] && relax(v, starIsValid(v) ? 0 : tolerance)) hasMoved[v] = true;
+        for (int sweep = 0; sweep < kSweeps; ++sweep, tolerance *= kShrink)
+            for (int v : around)
+                if (untangle(v, tolerance)) hasMoved_[v] = true;
         flipped = flippedFaces();
+        inVain = flipped.size() < fewest ? 0 : inVain + 1;
+        fewest = std::min(fewest, flipped.size());
     }
-    moved_ = static_cast<int>(std::count(hasMoved.begin(), hasMoved.end(), true));
     return flipped.empty();
 }
 

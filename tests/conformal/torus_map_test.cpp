@@ -82,7 +82,7 @@ TEST(TorusMap, GeometryImageIsTheTorus)
     EXPECT_NEAR(shapes::volume(sampled), shapes::volume(mesh), 0.01 * shapes::volume(mesh));
 }
 
-// Asked for a conformal map, unfold takes this one; with a layout of its own, the harmonic map of a square.
+// Asked for a conformal map, unfold takes this one; the harmonic map of a square is another.
 TEST(TorusMap, IsWhatUnfoldTakes)
 {
     const Mesh mesh = shapes::torus(3, 1, 48, 24);
@@ -91,7 +91,10 @@ TEST(TorusMap, IsWhatUnfoldTakes)
     const Result<Unfolded> torus = unfold(mesh, options);
     ASSERT_TRUE(torus.ok()) << torus.error().message;
     EXPECT_EQ(torus->square.disk.sides.size(), 4u);
-    options.layout = SquareLayout::Cut;
+    options.extrema = 2;
+    EXPECT_EQ(unfold(mesh, options).error().kind, ErrorKind::BadArgument);
+    options.extrema = 0;
+    options.param = MapKind::Harmonic;
     const Result<Unfolded> harmonic = unfold(mesh, options);
     ASSERT_TRUE(harmonic.ok()) << harmonic.error().message;
     const auto energy = [](const Unfolded& unfolded) { // of the torus: tau + 1 / tau for a rectangle, squared

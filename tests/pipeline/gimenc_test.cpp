@@ -127,7 +127,7 @@ TEST_F(Gimenc, ParamChoosesTheMapAndTheReportNamesIt)
 {
     const std::string torus = mesh("torus.ply", shapes::torus(2, 1, 24, 12));
     std::set<std::string> files;
-    for (const std::string param : {"", "mvc", "tutte", "conformal"}) {
+    for (const std::string param : {"", "mvc", "tutte", "harmonic"}) {
         const Ended ended = gimenc("--bytes 1000 --grid 33 --json -" +
                                    (param.empty() ? "" : " --param " + param) + torus + file("torus.gim"));
         ASSERT_EQ(ended.code, 0) << ended.err;

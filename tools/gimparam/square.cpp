@@ -42,8 +42,10 @@ void addOptions(CLI::App& command, SquareOptions& o)
         o.unfold.layout, "cut, octahedral (a closed surface of genus 0 folds up from the four sides), auto");
     std::map<std::string, MapKind> maps;
     for (MapKind kind : kMapKinds) maps[mapName(kind)] = kind;
-    addChoice<MapKind>(command, "--param", maps, o.unfold.param,
-                       "stretch (even samples), or linear: mvc (mean values), tutte, conformal (harmonic)");
+    maps[mapName(MapKind::Conformal)] = MapKind::Conformal;
+    addChoice<MapKind>(
+        command, "--param", maps, o.unfold.param,
+        "stretch (even samples), or linear: mvc (mean values), tutte, harmonic; conformal for tori");
     addChoice<Density>(command, "--density", {{"curvature", Density::Curvature}, {"even", Density::Even}},
                        o.unfold.density, "samples: closer where the surface bends (curvature), or even");
     command

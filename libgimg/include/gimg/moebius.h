@@ -59,7 +59,7 @@ Vec3 massCentre(const std::vector<Vec3>& points, const std::vector<double>& mass
 /// function whose gradient is the mass centre.
 /// @param points  on the unit sphere
 /// @param mass    one per point, >= 0
-/// Errors: BadArgument if half of the mass or more lies in one point, for which there is no such map.
+/// Errors: BadArgument if more than half of the mass lies in one point, for which there is no such map.
 /// Source: Douady, Earle 1986, "Conformally natural extension of homeomorphisms of the circle"; Baden, Crane,
 /// Kazhdan 2018, "Moebius registration".
 Result<Moebius> centringMass(const std::vector<Vec3>& points, const std::vector<double>& mass);

@@ -25,8 +25,6 @@ enum class ErrorKind
     NotClosed,         ///< a surface without boundary was required
     WrongGenus,        ///< the genus is not one that the call is for
     ZeroAreaFace,      ///< a triangle without an area, or as thin as a double can tell
-    NotASphere,        ///< a closed surface of genus 0 was required
-    DegenerateFace,    ///< a face without area
     FlippedTriangle,   ///< no embedding without flipped triangles was found
     TargetUnreachable, ///< no file meets the requested size or quality
     BadArgument,       ///< a parameter is outside its documented range
