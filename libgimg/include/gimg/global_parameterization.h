@@ -62,8 +62,8 @@ Result<PlaneMap> integrateOverDisk(const Mesh& mesh, const ComplexOneForm& form)
 struct BranchPoint
 {
     int vertex = 0; ///< the nearest
-    Vec3 position =
-        Vec3::Zero();     ///< of the angle in excess of a full turn: mean of the vertices that have it
+    /// Mean of the vertices that have angle in excess of a full turn, by how much.
+    Vec3 position = Vec3::Zero();
     int multiplicity = 0; ///< > 0
 };
 
@@ -72,15 +72,15 @@ struct BranchPoints
 {
     std::vector<BranchPoint> points;
     int total = 0;    ///< sum of the indices of all places: 2 g - 2
-    int negative = 0; ///< places of negative index, which no harmonic form has: 0
+    int negative = 0; ///< places of negative index, which no holomorphic form has: 0
 };
 
 /// The triangles of a closed form lie in the plane. Around each vertex their angles, negative in flipped
 /// triangles, add up to 2 pi (1 + k) with an integer k; the indices k of vertices and 1 of flipped triangles
-/// add up to 2 g - 2 (see docs/global.md). Counted on the intrinsic Delaunay triangulation, where a harmonic
-/// form has no places of negative index. A patch of flipped triangles is one place with all its vertices; so
-/// is one where the form is below 1e-13 of its largest value, as it is far out on a limb, and its index is
-/// that of a walk around it.
+/// add up to 2 g - 2 (see docs/global.md). Counted on the intrinsic Delaunay triangulation, where a form that
+/// is harmonic on it has no places of negative index. A patch of flipped triangles is one place with all its
+/// vertices; so is one where the form is below 1e-13 of its largest value, as it is far out on a limb, and
+/// its index is that of a walk around it.
 /// @param mesh  closed, connected, manifold, oriented
 /// @param form  closed, on the mesh's halfedges
 /// Errors: those of IntrinsicTriangulation::of; BadArgument for a form of another size.
