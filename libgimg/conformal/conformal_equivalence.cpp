@@ -24,10 +24,10 @@ constexpr double kInfinity = std::numeric_limits<double>::infinity();
 class IsometrySearch
 {
 public:
-    IsometrySearch(const Eigen::MatrixXcd& first, const Eigen::MatrixXcd& target,
-                   const EquivalenceOptions& options)
+    IsometrySearch(const Eigen::MatrixXcd& first, const Eigen::MatrixXcd& target, double tolerance,
+                   long mostNodes)
         : first_(first), target_(target), norm_(periodNorm(first)), pairing_(periodPairing(first.rows())),
-          bound_(options.tolerance), nodesLeft_(options.mostNodes)
+          bound_(tolerance), nodesLeft_(mostNodes)
     {
         const Eigen::MatrixXd targetNorm = periodNorm(target);
         basis_ = reducedLattice(targetNorm);
@@ -41,7 +41,7 @@ public:
 
     double distance() const { return distance_; }
     const Eigen::MatrixXi& transformation() const { return transformation_; }
-    bool wasStopped() const { return nodesLeft_ < 0; }
+    long nodesLeft() const { return nodesLeft_; } ///< negative if the search was stopped
 
 private:
     bool isExact() const { return distance_ < 1e-9; }
@@ -68,14 +68,13 @@ private:
         const Eigen::MatrixXd u = units.cast<double>();
         const Eigen::VectorXd there = u.transpose().partialPivLu().solve(center);
         bool goesOn = true;
-        forEachLatticePoint(u * form * u.transpose(), there, (stretch + (i > 0 ? 1 : 0)) * rest,
+        forEachLatticePoint(u * form * u.transpose(), there, (stretch + (i > 0 ? 1 : 0)) * rest, nodesLeft_,
                             [&](const Eigen::VectorXi& v) {
-                                if (--nodesLeft_ < 0) return goesOn = false;
                                 images_.row(i) = v.transpose() * units;
                                 if (isFit(i)) goesOn = place(i + 1);
                                 return goesOn;
                             });
-        return goesOn;
+        return goesOn && nodesLeft_ >= 0;
     }
 
     // The first image may be taken up to its sign: the other sign only turns all of them around.
@@ -90,10 +89,21 @@ private:
             const double scale = std::sqrt(targetProducts_(i, i) * targetProducts_(j, j));
             if (std::abs(products[j] - targetProducts_(j, i)) > loosest * scale) return false;
         }
-        if (i > 0) return true;
+        if (i > 0) return areWithinBound(i + 1);
         for (Eigen::Index k = 0; k < x.size(); ++k)
             if (x[k] != 0) return x[k] > 0;
         return false;
+    }
+
+    // Of the classes that the first `count` span.
+    bool areWithinBound(Eigen::Index count) const
+    {
+        const Eigen::MatrixXd placed = images_.topRows(count).cast<double>();
+        const Eigen::GeneralizedSelfAdjointEigenSolver<Eigen::MatrixXd> ratios(
+            placed * norm_ * placed.transpose(), targetProducts_.topLeftCorner(count, count),
+            Eigen::EigenvaluesOnly);
+        const double loosest = std::exp(bound_) * (1 + 1e-9);
+        return ratios.eigenvalues().maxCoeff() <= loosest && ratios.eigenvalues().minCoeff() >= 1 / loosest;
     }
 
     bool accept()
@@ -120,17 +130,24 @@ private:
     long nodesLeft_;
 };
 
+// With small tolerances first, which leave little to look at: what they find is the nearest.
 void search(const Eigen::MatrixXcd& first, const Eigen::MatrixXcd& target, bool reflected,
             const EquivalenceOptions& options, Equivalence& best)
 {
-    IsometrySearch isometries(first, target, options);
-    isometries.run();
-    if (isometries.wasStopped()) best.exhaustive = false;
-    if (!(isometries.distance() < best.distance)) return;
-    best.equivalent = true;
-    best.distance = isometries.distance();
-    best.transformation = isometries.transformation();
-    best.reflected = reflected;
+    long nodesLeft = options.mostNodes;
+    for (const double part : {1.0 / 64, 1.0 / 16, 1.0 / 4, 1.0}) {
+        IsometrySearch isometries(first, target, part * options.tolerance, nodesLeft);
+        isometries.run();
+        nodesLeft = isometries.nodesLeft();
+        if (nodesLeft < 0) best.exhaustive = false;
+        if (isometries.distance() < best.distance) {
+            best.equivalent = true;
+            best.distance = isometries.distance();
+            best.transformation = isometries.transformation();
+            best.reflected = reflected;
+        }
+        if (nodesLeft < 0 || isometries.distance() < kInfinity) return;
+    }
 }
 
 } // namespace

@@ -12,9 +12,10 @@ namespace gimg {
 Eigen::MatrixXi reducedLattice(const Eigen::MatrixXd& gram);
 
 /// Calls `visit` for every integer vector v with (v - center)' G (v - center) <= squaredRadius until it
-/// returns false. Quick if the units are reduced in G. Source: Fincke, Pohst 1985, "Improved methods for
-/// calculating vectors of short length in a lattice".
+/// returns false or `nodesLeft`, which every value tried for a coordinate lessens by one, is negative. Quick
+/// if the units are reduced in G. Source: Fincke, Pohst 1985, "Improved methods for calculating vectors of
+/// short length in a lattice".
 void forEachLatticePoint(const Eigen::MatrixXd& gram, const Eigen::VectorXd& center, double squaredRadius,
-                         const std::function<bool(const Eigen::VectorXi&)>& visit);
+                         long& nodesLeft, const std::function<bool(const Eigen::VectorXi&)>& visit);
 
 } // namespace gimg

@@ -150,6 +150,7 @@ Loop LoopFinder::joined(std::span<const Loop> loops, const Eigen::VectorXi& mult
         std::reverse(bridge.begin(), bridge.end());
         for (int h : bridge) walk.push_back(he.twin(h));
     }
+    if (multiplicity.cwiseAbs().sum() == 1) return Loop{std::move(walk)}; // as tight as it was given
     return tightened(Loop{std::move(walk)});
 }
 

@@ -19,7 +19,8 @@ public:
     /// See homologyBasis().
     std::vector<Loop> basis();
 
-    /// One closed walk in the class of the sum of multiplicity[i] times loops[i].
+    /// One closed walk in the class of the sum of multiplicity[i] times loops[i], pulled tight if it is more
+    /// than one of them.
     Loop joined(std::span<const Loop> loops, const Eigen::VectorXi& multiplicity);
 
 private:

@@ -1,4 +1,5 @@
 #include "gimg/holomorphic.h"
+#include "gimg/mesh_io.h"
 #include "gimg/periods.h"
 
 #include "known_surfaces.h"
@@ -7,9 +8,12 @@
 #include <Eigen/Dense>
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <limits>
 #include <random>
+#include <string>
 
 namespace gimg {
 namespace {
@@ -260,6 +264,35 @@ TEST(ConformalStructure, RiemannsRelationsHoldBetterOnFinerMeshes)
         const ConformalStructure cover = structureOf(known::coverOverEquator(8, n, 0.2, 1.8), unsplit());
         EXPECT_LT(cover.asymmetry, before / 2);
         before = cover.asymmetry;
+    }
+}
+
+Mesh corpusMesh(const std::string& name)
+{
+    const char* folder = std::getenv("GIMG_CORPUS_DIR");
+    const std::string path = folder != nullptr ? folder : std::string(GIMG_SOURCE_CORPUS) + "/cache";
+    Result<MeshFile> read = readMesh(path + "/" + name);
+    EXPECT_TRUE(read.ok()) << read.error().message << " (corpus/fetch brings it)";
+    return read.ok() ? std::move(read->mesh) : Mesh{};
+}
+
+TEST(ConformalStructure, MachinePartsReachTheResidualBySplits)
+{
+    for (const auto& [name, genus] :
+         {std::pair("eight.off", 2), std::pair("helmet.off", 3), std::pair("anchor.off", 4)}) {
+        const Mesh mesh = corpusMesh(name);
+        const ConformalStructure raw = structureOf(mesh, unsplit()), split = structureOf(mesh);
+        EXPECT_EQ(raw.genus, genus);
+        EXPECT_EQ(raw.triangles, mesh.faceCount());
+        EXPECT_GT(raw.starResidual, 0.015);
+        EXPECT_LE(split.starResidual, 0.01);
+        EXPECT_LT(split.triangles, mesh.faceCount() + 8000);
+        const Eigen::MatrixXd imaginary = split.periodMatrix.imag();
+        EXPECT_GT(Eigen::SelfAdjointEigenSolver<Eigen::MatrixXd>(imaginary).eigenvalues()[0], 0.5);
+        // Both are within their bounds of the same matrix.
+        const double apart =
+            conformallyEquivalent(raw.periodMatrix, split.periodMatrix, {.tolerance = 0.2})->distance;
+        EXPECT_LE(apart, 0.5 * (std::log1p(raw.starResidual) + std::log1p(split.starResidual)));
     }
 }
 

@@ -100,6 +100,18 @@ TEST(SurfaceCheck, WhatIsNoSurfaceIsNamed)
     EXPECT_EQ(kindOf(pinched), ErrorKind::NonManifoldVertex);
 }
 
+TEST(SurfaceCheck, VerticesWithoutFacesDoNotCount)
+{
+    Mesh torus = shapes::torus(3, 1, 8, 6);
+    const Eigen::MatrixXcd periods = conformalStructure(torus)->periodMatrix;
+    torus.positions.insert(torus.positions.begin(), Vec3(1, 2, 3));
+    torus.positions.emplace_back(4, 5, 6);
+    for (Triangle& t : torus.faces)
+        for (int& v : t) ++v;
+    EXPECT_EQ(closedTopology(polyhedralSurface(torus))->vertices, 48);
+    EXPECT_LT((conformalStructure(torus)->periodMatrix - periods).norm(), 1e-12);
+}
+
 TEST(SurfaceCheck, LengthsMustFitTheFaces)
 {
     PolyhedralSurface surface = polyhedralSurface(shapes::torus(3, 1, 8, 6));

@@ -11,8 +11,7 @@
 
 namespace gimg {
 
-/// The complex structure of a closed surface of genus g >= 1, as its forms and their periods. With a form's
-/// integral along a and b as the letters of its periods:
+/// The complex structure of a closed surface of genus g >= 1, as its forms and their periods.
 struct ConformalStructure
 {
     int genus = 0;
@@ -57,9 +56,9 @@ struct ConformalOptions
 };
 
 /// All of it, with one factorization for all forms (and one more for each round of splits). Near-linear in
-/// the number of faces, linear in the genus. Errors: those of closedTopology; WrongGenus for genus 0;
-/// SolverFailure; BadArgument unless starResidual > 0. Source: thesis §6, Algorithms 3 to 8; period matrix
-/// §4.13 and §8.2.3, in today's normalisation.
+/// the number of faces, linear in the genus.
+/// Errors: those of closedTopology; WrongGenus for genus 0; SolverFailure; BadArgument unless starResidual >
+/// 0. Source: thesis §6, Algorithms 3 to 8; period matrix §4.13 and §8.2.3, in today's normalisation.
 Result<ConformalStructure> conformalStructure(const PolyhedralSurface& surface,
                                               const ConformalOptions& options = {});
 Result<ConformalStructure> conformalStructure(const Mesh& mesh, const ConformalOptions& options = {});

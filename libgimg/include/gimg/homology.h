@@ -24,12 +24,12 @@ struct Loop
 double loopLength(const PolyhedralSurface& surface, const Loop& loop);
 
 /// 2g short loops that form a basis of the first homology group with integer coefficients. Of a closed
-/// surface of genus 0 there are none. From the loops of a tree-cotree decomposition with shortest paths, each
-/// is replaced by the shortest found through a few other roots as long as the basis stays one, and then
-/// pulled tight within its class. Errors: those of closedTopology. Source: Eppstein 2003, "Dynamic generators
-/// of topologically embedded graphs" (tree-cotree); Erickson, Whittlesey 2005, "Greedy optimal homotopy and
-/// homology generators" (shortest loops through a root). Where the thesis (§6.2) simplifies the mesh to
-/// reduce matrices, this takes near-linear time.
+/// surface of genus 0 there are none. From the loops of tree-cotree decompositions with shortest paths from a
+/// few roots, the shortest are chosen that form an integer basis, and each is pulled tight within its class.
+/// The shortest comes first. Near-linear time for bounded genus. Errors: those of closedTopology. Source:
+/// Eppstein 2003, "Dynamic generators of topologically embedded graphs" (tree-cotree); Erickson, Whittlesey
+/// 2005, "Greedy optimal homotopy and homology generators" (shortest loops through a root). In place of the
+/// reduction of matrices of a simplified mesh in thesis §6.2.
 Result<std::vector<Loop>> homologyBasis(const PolyhedralSurface& surface);
 Result<std::vector<Loop>> homologyBasis(const Mesh& mesh);
 
