@@ -1,7 +1,9 @@
 #include "gimg/encode.h"
 
+#include "gimg/conformal_image.h"
 #include "gimg/decode.h"
 #include "gimg/sample.h"
+#include "gimg/stretch.h"
 #include "gimg/unfold.h"
 #include "prepared.h"
 #include "stopwatch.h"
@@ -83,6 +85,107 @@ bool isBetter(const CodedFile& file, const CodedFile& than, EncodeTarget target)
 
 constexpr int kSmallestGrid = 129, kLargestGrid = 513; // that are chosen where the grid is left open
 
+using Stage = std::function<void(const char* name, double fraction)>;
+
+// A surface on the square by way of a cut or a star, and what there is to report of it.
+Result<GridSource> unfoldedSource(const Mesh& mesh, const EncodeOptions& options,
+                                  const std::function<const SurfaceMeasure&()>& measured, const Stage& stage,
+                                  EncodedMesh& out)
+{
+    Stopwatch watch;
+    stage("cut", 0);
+    double cutSeconds = 0;
+    Result<Unfolded> unfolded =
+        unfold(mesh, {{options.grid, options.lowest, options.layout}, options.param, options.density},
+               {[&](const Unfolded& candidate) { return smallFilePsnr(candidate, measured()); },
+                [&](const Unfolded& candidate) { return barePsnr(candidate, measured()); }},
+               [&](const char* name, double fraction) {
+                   if (cutSeconds == 0 && std::string_view(name) != "cut") cutSeconds = watch.lap();
+                   stage(name, fraction);
+               });
+    if (!unfolded) return unfolded.error();
+    const auto& [cut, layout, extrema, square, map] = *unfolded;
+    out.cutNodes = cut.nodeCount();
+    out.cutPaths = static_cast<int>(cut.paths.size());
+    out.layout = layout;
+    out.cutExtrema = extrema;
+    out.grid = square.grid;
+    out.lowest = square.lowest;
+    if (options.grid == 0 && options.lowest == 0 && out.grid > BorderOptions::kDefaultGrid)
+        out.warnings.push_back("the cut has " + std::to_string(out.cutPaths) + " paths: the grid grew to " +
+                               std::to_string(out.grid) + " samples a side");
+    out.stretchEfficiency = map.efficiency;
+    out.seconds.cut = cutSeconds;
+    out.seconds.parameterize = watch.lap();
+
+    stage("sample", 0);
+    GridSource source;
+    if (options.normals != 0) {
+        Result<FloatImage> normals = sampleNormals(square, map, options.normals);
+        if (!normals) return normals.error();
+        source.normals = std::move(*normals);
+    }
+    const auto shared = std::make_shared<const Unfolded>(std::move(*unfolded));
+    source.surface = {shared, &shared->square.surface};
+    source.seam = seamOf(shared->square);
+    source.sample = [shared](int grid) { return sampleGeometry(shared->square, shared->map, grid); };
+    out.seconds.sample = watch.lap();
+    return source;
+}
+
+// That of the triangles that a grid spans.
+double gridEfficiency(const FloatImage& geometry)
+{
+    std::vector<Vec2> st;
+    for (int j = 0; j < geometry.height; ++j)
+        for (int i = 0; i < geometry.width; ++i) st.push_back(Vec2(i, j) / (geometry.width - 1));
+    return stretchEfficiency(gridMesh(geometry), st);
+}
+
+// A surface on the square by way of the sphere.
+Result<GridSource> conformalSource(const Mesh& mesh, const EncodeOptions& options, const Stage& stage,
+                                   EncodedMesh& out)
+{
+    constexpr int kLowest = 33, kSmallest = 5;
+    if (options.layout == SquareLayout::Cut)
+        return Error{ErrorKind::BadArgument, "the conformal map comes in the octahedral layout only"};
+    out.layout = SquareLayout::Octahedral;
+    out.grid = options.grid != 0 ? options.grid : BorderOptions::kDefaultGrid;
+    out.lowest =
+        options.lowest != 0 ? options.lowest : std::min(kLowest, std::max(kSmallest, (out.grid - 1) / 4 + 1));
+    if (!isImageSize(out.grid) || !isImageSize(out.lowest) || out.lowest < kSmallest || out.lowest > out.grid)
+        return Error{ErrorKind::BadArgument, "a grid of " + std::to_string(out.grid) +
+                                                 " with a lowest level of " + std::to_string(out.lowest) +
+                                                 ": both must be 2^k + 1, from 5 to " +
+                                                 std::to_string(BorderOptions::kLargestGrid) +
+                                                 ", and the level no larger than the grid"};
+    Stopwatch watch;
+    stage("parameterize", 0);
+    Result<ConformalSquare> conformal =
+        ConformalSquare::of(mesh, [&](double fraction) { stage("parameterize", fraction); });
+    if (!conformal) return conformal.error();
+    out.cutNodes = 5; // the centre of a star and its tips
+    out.cutPaths = 4;
+    const auto shared = std::make_shared<const ConformalSquare>(std::move(*conformal));
+    out.seconds.parameterize = watch.lap();
+
+    stage("sample", 0);
+    GridSource source;
+    source.surface = {shared, &shared->surface()};
+    source.seam = foldedSquareSeam(out.lowest);
+    source.sample = [shared](int grid) { return shared->geometry(grid); };
+    const Result<FloatImage> geometry = shared->geometry(BorderOptions::kDefaultGrid);
+    if (!geometry) return geometry.error();
+    out.stretchEfficiency = gridEfficiency(*geometry);
+    if (options.normals != 0) {
+        Result<FloatImage> normals = shared->normals(options.normals);
+        if (!normals) return normals.error();
+        source.normals = std::move(*normals);
+    }
+    out.seconds.sample = watch.lap();
+    return source;
+}
+
 } // namespace
 
 Status checkScale(const Mesh& mesh, std::vector<std::string>& warnings)
@@ -149,64 +252,33 @@ Result<MeshEncoder> MeshEncoder::prepare(const Mesh& mesh, const EncodeOptions& 
     }
     EncodedMesh out;
     if (const Status scale = checkScale(mesh, out.warnings); !scale) return scale.error();
-    Stopwatch watch;
     out.topology = topology(mesh);
+    out.param = options.param;
+    out.normals = options.normals;
 
-    stage("cut", 0);
     std::optional<SurfaceMeasure> measure; // built when needed: it takes as much memory as the mesh
     std::once_flag isBuilt;
     const auto measured = [&]() -> const SurfaceMeasure& {
         std::call_once(isBuilt, [&] { measure.emplace(options.reference ? *options.reference : mesh); });
         return *measure;
     };
-    double cutSeconds = 0;
-    Result<Unfolded> unfolded =
-        unfold(mesh, {{options.grid, options.lowest, options.layout}, options.param, options.density},
-               {[&](const Unfolded& candidate) { return smallFilePsnr(candidate, measured()); },
-                [&](const Unfolded& candidate) { return barePsnr(candidate, measured()); }},
-               [&](const char* name, double fraction) {
-                   if (cutSeconds == 0 && std::string_view(name) != "cut") cutSeconds = watch.lap();
-                   stage(name, fraction);
-               });
-    if (!unfolded) return unfolded.error();
-    const auto& [cut, layout, extrema, square, map] = *unfolded;
-    out.cutNodes = cut.nodeCount();
-    out.cutPaths = static_cast<int>(cut.paths.size());
-    out.layout = layout;
-    out.cutExtrema = extrema;
-    out.grid = square.grid;
-    out.lowest = square.lowest;
-    if (options.grid == 0 && options.lowest == 0 && out.grid > BorderOptions::kDefaultGrid)
-        out.warnings.push_back("the cut has " + std::to_string(out.cutPaths) + " paths: the grid grew to " +
-                               std::to_string(out.grid) + " samples a side");
-    out.param = options.param;
-    out.stretchEfficiency = map.efficiency;
-    out.seconds.cut = cutSeconds;
-    out.seconds.parameterize = watch.lap();
-
-    stage("sample", 0);
-    Result<FloatImage> normals = FloatImage{};
-    if (options.normals != 0) normals = sampleNormals(square, map, options.normals);
-    if (!normals) return normals.error();
-    out.normals = options.normals;
+    const bool torus = out.topology.genus == 1 && out.topology.boundaries == 0;
+    Result<GridSource> source = options.param == MapKind::Conformal && !torus
+                                    ? conformalSource(mesh, options, stage, out)
+                                    : unfoldedSource(mesh, options, measured, stage, out);
+    if (!source) return source.error();
     const Effort effort = Effort::of(options);
-    const auto shared = std::make_shared<const Unfolded>(std::move(*unfolded));
-    GridSource source;
-    source.surface = {shared, &shared->square.surface};
-    source.seam = seamOf(shared->square);
-    source.sample = [shared](int grid) { return sampleGeometry(shared->square, shared->map, grid); };
-    source.normals = std::move(*normals);
-    source.attributes = std::move(attributes);
-    source.fitRounds = options.fit ? effort.fitRounds : 0;
-    source.refits = options.fit;
-    source.features = options.features;
-    source.smoothLevels = options.smoothLevels;
-    out.seconds.sample = watch.lap();
+    source->attributes = std::move(attributes);
+    source->fitRounds = options.fit ? effort.fitRounds : 0;
+    source->refits = options.fit;
+    source->features = options.features;
+    source->smoothLevels = options.smoothLevels;
+    Stopwatch watch;
     measured();
     out.seconds.code = watch.lap();
     return MeshEncoder(
         std::make_unique<const Prepared>(Prepared{std::move(out), options.features, options.grid == 0, effort,
-                                                  std::make_unique<GridEncoders>(std::move(source)),
+                                                  std::make_unique<GridEncoders>(std::move(*source)),
                                                   std::move(*measure), options.progress, options.threads}));
 }
 

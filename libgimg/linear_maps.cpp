@@ -5,6 +5,8 @@
 #include "gimg/mean_value.h"
 #include "gimg/stretch.h"
 
+#include <string>
+
 namespace gimg {
 namespace {
 
@@ -44,6 +46,8 @@ const char* mapName(MapKind kind)
         return "mvc";
     case MapKind::Tutte:
         return "tutte";
+    case MapKind::Harmonic:
+        return "harmonic";
     case MapKind::Conformal:
         return "conformal";
     case MapKind::Stretch:
@@ -58,10 +62,11 @@ Result<std::vector<Vec2>> linearMap(const SquareDisk& square, MapKind kind)
     std::vector<bool> fixed;
     for (uint8_t sides : square.squareSides) fixed.push_back(sides != 0);
     std::vector<Vec2> st = square.borderPosition;
-    Status mapped = Error{ErrorKind::BadArgument, "the stretch-minimising map is not linear"};
+    Status mapped = Error{ErrorKind::BadArgument,
+                          std::string("the ") + mapName(kind) + " map is no linear map of a disk"};
     if (kind == MapKind::MeanValue) mapped = meanValueMap(disk, fixed, st);
     if (kind == MapKind::Tutte) mapped = tutteMap(disk, fixed, st);
-    if (kind == MapKind::Conformal) mapped = harmonicMap(disk, fixed, st);
+    if (kind == MapKind::Harmonic) mapped = harmonicMap(disk, fixed, st);
     if (!mapped) return mapped.error();
     return st;
 }

@@ -2,6 +2,7 @@
 
 #include "gimg/extrema.h"
 #include "gimg/stretch.h"
+#include "gimg/torus_map.h"
 #include "layout_search.h"
 #include "one_solver_thread.h"
 
@@ -46,6 +47,7 @@ public:
                 return Error{ErrorKind::TargetUnreachable, "no star of four paths opens this surface"};
             return octahedral(tips);
         }
+        if (options_.param == MapKind::Conformal) return conformalTorus();
         if (!sphere) return alongCut(extrema(FlattenEffort::Trial));
         if (options_.layout == SquareLayout::Cut || options_.extrema)
             return alongCut(extrema(FlattenEffort::Full));
@@ -87,6 +89,16 @@ private:
         tbb::parallel_invoke([&] { judge(star, octahedral(tips)); }, [&] { judge(cut, alongCut(reached)); });
         if (!*star.unfolded || !*cut.unfolded) return std::move(*(*star.unfolded ? star : cut).unfolded);
         return std::move(*(star.quality > cut.quality ? star : cut).unfolded);
+    }
+
+    Result<Unfolded> conformalTorus()
+    {
+        if (options_.extrema)
+            return Error{ErrorKind::BadArgument, "a conformal map is not extended to extrema"};
+        Result<TorusMap> torus = torusToSquare(mesh_, options_);
+        if (!torus) return torus.error();
+        return Unfolded{torus->square.cut, SquareLayout::Cut, 0, std::move(torus->square),
+                        std::move(torus->map)};
     }
 
     Result<Unfolded> octahedral(const StarTips& tips)

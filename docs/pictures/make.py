@@ -14,7 +14,7 @@ import tempfile
 from pathlib import Path
 
 import numpy as np
-from PIL import Image
+from PIL import Image, ImageOps
 
 from renderer import (IMAGES, INSIDE, ROOT, View, board, column, facing, few_colours, fewer_bits, read_ply, render, row,
                       save, square_panel, stretch_colours, stretch_scale, turn)
@@ -176,7 +176,7 @@ def stretch(studio):
 def maps(studio):
     """Every map to the square, on a part with the same cut and layout."""
     panels, captions = [], []
-    for param in ("tutte", "mvc", "conformal", "stretch"):
+    for param in ("tutte", "mvc", "harmonic", "stretch"):
         mesh, report = studio.mapped(studio.fetched("fandisk"), "--param", param, "--density", "even")
         view = View(mesh, turn(yaw=-60, pitch=20), 220, 222)
         panels.append(render(mesh, view, colours=stretch_colours(mesh.stretch), grid=1 / 32, smooth=False))
@@ -199,7 +199,35 @@ def layouts(studio):
     save(column(rows), "layouts.png")
 
 
-PICTURES = {f.__name__: f for f in (bunny, levels, rates, seam, genus, lines, topology, heatmap, cut_stages, stretch, maps, layouts)}
+def checkered(studio, mesh, *options):
+    """gimparam's own picture of a surface under a checkerboard, without its empty margins."""
+    path = studio.path("checkered.png")
+    studio.run("gimparam", "uv", "--quiet", "--picture", path, "--picture-size", 400, *options, mesh, studio.path("uv.obj"))
+    picture = Image.open(path).convert("RGB")
+    return picture.crop(ImageOps.invert(picture).getbbox())
+
+
+def conformal_handles(studio):
+    """Checkerboards of holomorphic forms; handles in colours of their own, branch points red."""
+    above = ["--look", "0.2,0.9,-1", "--fields", 32]
+    panels = [checkered(studio, studio.fetched("eight"), "--subdivide", 2, "--modular", "--look", "-0.3,-0.9,-0.6", "--fields", 28),
+              checkered(studio, studio.shape("genus", "--genus", "3", "--resolution", "16"), "--modular", *above)]
+    save(row(panels, ["eight", "genus 3"]), "conformal-handles.png", colours=128)
+
+
+def conformal_limbs(studio):
+    """What holes at the tips of limbs do to a conformal map."""
+    elephant, horse = studio.fetched("elephant"), studio.fetched("horse")
+    back = ["--look", "0.3,-0.2,-1"]
+    panels = [checkered(studio, elephant, *back),
+              checkered(studio, elephant, "--puncture", "13484,18303,40780,2286,43530,30375", *back),
+              checkered(studio, horse, "--puncture", "14848,37481,14704,40651,40659,36447",
+                        "--look", "1,-0.1,-0.3", "--up", "0,0,1")]
+    save(row(panels, ["elephant", "with 6 holes", "horse, with 6 holes"]), "conformal-limbs.png", colours=128)
+
+
+PICTURES = {f.__name__: f for f in (bunny, levels, rates, seam, genus, lines, topology, heatmap, cut_stages, stretch, maps, layouts,
+                                    conformal_handles, conformal_limbs)}
 
 
 def main():

@@ -127,7 +127,7 @@ TEST_F(Gimenc, ParamChoosesTheMapAndTheReportNamesIt)
 {
     const std::string torus = mesh("torus.ply", shapes::torus(2, 1, 24, 12));
     std::set<std::string> files;
-    for (const std::string param : {"", "mvc", "tutte", "conformal"}) {
+    for (const std::string param : {"", "mvc", "tutte", "harmonic"}) {
         const Ended ended = gimenc("--bytes 1000 --grid 33 --json -" +
                                    (param.empty() ? "" : " --param " + param) + torus + file("torus.gim"));
         ASSERT_EQ(ended.code, 0) << ended.err;
@@ -139,6 +139,21 @@ TEST_F(Gimenc, ParamChoosesTheMapAndTheReportNamesIt)
     }
     EXPECT_EQ(files.size(), 4u);
     EXPECT_EQ(gimenc("--bytes 1000 --param best" + torus + file("torus.gim")).code, 2);
+}
+
+TEST_F(Gimenc, ConformalGoesThroughTheSphere)
+{
+    const std::string ball = mesh("ball.ply", shapes::wavySphere(1, 0.3, 3, 12));
+    const Ended ended = gimenc("--bytes 1500 --grid 65 --param conformal --json -" + ball + file("ball.gim"));
+    ASSERT_EQ(ended.code, 0) << ended.err;
+    const auto json = nlohmann::json::parse(ended.out);
+    EXPECT_EQ(json.at("param"), "conformal");
+    EXPECT_EQ(json.at("layout"), "octahedral");
+    EXPECT_GT(json.at("psnr").get<double>(), 55);
+    const Ended refused = gimenc("--bytes 1500 --param conformal" +
+                                 mesh("torus.ply", shapes::torus(2, 1, 24, 12)) + file("x.gim"));
+    EXPECT_EQ(refused.code, 1);
+    EXPECT_THAT(refused.err, HasSubstr("genus 1"));
 }
 
 TEST_F(Gimenc, SurfaceCodingIsDecibelsAheadOfComponentsOnTheirOwn)

@@ -19,6 +19,7 @@ std::vector<std::string> mapNames()
 {
     std::vector<std::string> names;
     for (MapKind kind : kMapKinds) names.push_back(mapName(kind));
+    names.push_back(mapName(MapKind::Conformal));
     return names;
 }
 
@@ -157,7 +158,8 @@ void addOptions(CLI::App& app, Arguments& a)
         ->check(CLI::IsMember({"curvature", "even"}));
     app.add_option("--param", a.param,
                    "map to the square: stretch (even samples), or linear and fast, but shrinking what sticks "
-                   "out: mvc (mean values), tutte, conformal (harmonic)")
+                   "out: mvc (mean values), tutte, harmonic; or conformal, for closed surfaces of genus 0 "
+                   "(by way of the sphere) and 1")
         ->check(CLI::IsMember(mapNames()));
     addTopologyOptions(app, a);
     app.add_option("--threads", a.threads,
@@ -312,6 +314,7 @@ EncodeOptions encodeOptions(const Arguments& a)
     options.progressive = a.progressive;
     options.coding = a.coding == "wavelet" ? LossyCoding::Wavelet : LossyCoding::Surface;
     options.density = a.density == "even" ? Density::Even : Density::Curvature;
+    if (a.param == mapName(MapKind::Conformal)) options.param = MapKind::Conformal;
     for (MapKind kind : kMapKinds)
         if (a.param == mapName(kind)) options.param = kind;
     if (a.bytes) {

@@ -40,18 +40,19 @@ struct UnfoldJudge
     std::function<double(const Unfolded&)> bare;  ///< dB of the grid itself
 };
 
-/// Cut, layout and flattening. Closed surfaces of genus 0 get the octahedral layout, unless a simplified mesh
-/// shows that samples spread far more evenly along an extended cut. The others are cut to a disk, and the cut
-/// is extended to the extrema if that is sure to help; where findExtrema expects less than half the energy to
-/// go, the surface is flattened both ways and the one that `judge` finds better is taken. An extended cut
-/// that does not fit the border, or whose map fails, is not taken. Then a better layout of the border is
-/// looked for (see docs/border.md); below 20,000 faces the mesh is flattened in it too, and it is taken if
-/// `judge` finds the small file better and the bare grid no worse than by 0.2 dB.
+/// Cut, layout and flattening. MapKind::Conformal is for tori, see torusToSquare. Closed surfaces of genus 0
+/// get the octahedral layout, unless a simplified mesh shows that samples spread far more evenly along an
+/// extended cut. The others are cut to a disk, and the cut is extended to the extrema if that is sure to
+/// help; where findExtrema expects less than half the energy to go, the surface is flattened both ways and
+/// the one that `judge` finds better is taken. An extended cut that does not fit the border, or whose map
+/// fails, is not taken. Then a better layout of the border is looked for (see docs/border.md); below 20,000
+/// faces the mesh is flattened in it too, and it is taken if `judge` finds the small file better and the bare
+/// grid no worse than by 0.2 dB.
 /// @param mesh   connected, manifold, oriented
 /// @param judge  if there is none, less of quarticStretchEnergy is better
-/// Errors: those of layOutBorder and mapToSquare; BadArgument where the octahedral layout is asked for
-/// and the surface is not closed or has handles, or a number of extrema is; TargetUnreachable where no star
-/// was found.
+/// Errors: those of layOutBorder, mapToSquare and torusToSquare; BadArgument where the octahedral layout is
+/// asked for and the surface is not closed or has handles, or a number of extrema is; TargetUnreachable where
+/// no star was found.
 Result<Unfolded> unfold(const Mesh& mesh, const UnfoldOptions& options, const UnfoldJudge& judge = {},
                         const UnfoldProgress& progress = {});
 
