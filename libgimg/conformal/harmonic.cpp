@@ -204,6 +204,8 @@ Eigen::VectorXd HarmonicSolver::conjugateErrors(const OneForm& a, const OneForm&
 Status HarmonicSolver::refine(const Eigen::VectorXd& pieces)
 {
     IntrinsicTriangulation& triangulation = parts_->triangulation;
+    if (pieces.size() != triangulation.faceCount() || !pieces.allFinite())
+        return Error{ErrorKind::BadArgument, "refining needs one finite number of pieces per face"};
     std::vector<double> wanted(pieces.data(), pieces.data() + pieces.size());
     for (double& count : wanted) count = std::min(count, 16.0);
     for (int halving = 0; halving < 4; ++halving) {

@@ -134,6 +134,7 @@ TEST(Harmonic, SplittingLowersTheEnergyTowardsTheSurfaces)
         EXPECT_LT(solver.divergence(forms.onTriangulation[0]), 1e-12);
         energy = finer;
     }
+    EXPECT_EQ(solver.refine(Eigen::VectorXd::Ones(3)).error().kind, ErrorKind::BadArgument);
 }
 
 } // namespace

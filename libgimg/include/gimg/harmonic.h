@@ -44,7 +44,8 @@ public:
     Eigen::VectorXd conjugateErrors(const OneForm& a, const OneForm& b) const;
 
     /// Splits each face of the triangulation into about as many as `pieces` says, at most 16 at once, makes
-    /// it Delaunay again and factors anew. Errors: SolverFailure.
+    /// it Delaunay again and factors anew.
+    /// Errors: BadArgument if there is not one finite number per face; SolverFailure.
     /// @param pieces  per face of the triangulation; those below 2 are split only where a neighbour is
     Status refine(const Eigen::VectorXd& pieces);
 
