@@ -16,7 +16,7 @@ from pathlib import Path
 import numpy as np
 from PIL import Image, ImageOps
 
-from renderer import (IMAGES, INSIDE, ROOT, View, board, column, facing, few_colours, fewer_bits, read_ply, render, row,
+from renderer import (IMAGES, INSIDE, ROOT, Mesh, View, board, column, facing, few_colours, fewer_bits, read_ply, render, row,
                       save, square_panel, stretch_colours, stretch_scale, turn)
 
 
@@ -226,8 +226,26 @@ def conformal_limbs(studio):
     save(row(panels, ["elephant", "with 6 holes", "horse, with 6 holes"]), "conformal-limbs.png", colours=128)
 
 
+def spheres(studio):
+    """The bunny, on the sphere with the light it has itself, and the lines of two geometry images of it."""
+    lines = [line.split() for line in open(studio.bunny) if line[:2] in ("v ", "f ")]
+    surface = Mesh(np.array([line[1:4] for line in lines if line[0] == "v"], float),
+                   np.array([[c.split("/")[0] for c in line[1:4]] for line in lines if line[0] == "f"], int) - 1)
+    studio.run("gimparam", "sphere", "--quiet", studio.bunny, studio.path("sphere.ply"))
+    sphere = read_ply(studio.path("sphere.ply"))
+    assert (sphere.faces == surface.faces).all()
+    normals = surface.vertex_normals()
+    sphere.vertex_normals = lambda: normals
+    panels = [render(surface, View(surface, BUNNY_VIEW, 250, 240)), render(sphere, View(sphere, BUNNY_VIEW, 230, 240))]
+    for param in ("conformal", "stretch"):
+        image = studio.decoded(studio.encoded(studio.bunny, "--raw", "float", "--no-fit", "--grid", 257, "--layout",
+                                              "octahedral", "--param", param))
+        panels.append(render(image, View(surface, BUNNY_VIEW, 250, 240), grid=4))
+    save(row(panels, ["bunny", "on the sphere", "lines of --param conformal", "of --param stretch"]), "spheres.png")
+
+
 PICTURES = {f.__name__: f for f in (bunny, levels, rates, seam, genus, lines, topology, heatmap, cut_stages, stretch, maps, layouts,
-                                    conformal_handles, conformal_limbs)}
+                                    spheres, conformal_handles, conformal_limbs)}
 
 
 def main():

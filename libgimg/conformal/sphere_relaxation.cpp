@@ -270,7 +270,8 @@ bool SphereRelaxation::untangle()
             for (int v : around)
                 if (untangle(v, tolerance)) hasMoved_[v] = true;
         flipped = flippedFaces();
-        inVain = flipped.size() < fewest ? 0 : inVain + 1;
+        // (What shrinks by less each time would take forever.)
+        inVain = 20 * flipped.size() < 19 * fewest ? 0 : inVain + 1;
         fewest = std::min(fewest, flipped.size());
     }
     return flipped.empty();

@@ -80,7 +80,9 @@ struct EncodeOptions : EncodeGoal
                                                    ///< needed any more when the encoder is prepared.
     int threads = 0;                               ///< 0: one a core. The file does not depend on it.
     EncodeProgress progress;
-    MapKind param = MapKind::Stretch; ///< how the surface is mapped to the square
+    /// How the surface is mapped to the square. Conformal needs a closed surface of genus 0, comes in the
+    /// octahedral layout, and knows no density.
+    MapKind param = MapKind::Stretch;
     Density density = Density::Curvature;
     bool fit = true; ///< move the samples to where the triangles between them fit the mesh, see fitGeometry
     bool features = false; ///< lay grid lines along sharp edges, see followFeatures; needs `fit`.
