@@ -235,7 +235,7 @@ TEST(SphereMap, CanLeaveTheMassCentreWhereItIs)
 }
 
 // What real scans and machine parts demand.
-class SphereMapOfCorpus : public testing::TestWithParam<std::pair<const char*, double>>
+class SphereMapOfCorpus : public testing::TestWithParam<std::pair<std::string, double>>
 {
 };
 
@@ -254,10 +254,11 @@ TEST_P(SphereMapOfCorpus, HasNoFlipAndKeepsAngles)
     EXPECT_LT(map->quality.medianAngleError, median);
 }
 
+using NameAndMedian = std::pair<std::string, double>;
 INSTANTIATE_TEST_SUITE_P(Meshes, SphereMapOfCorpus,
-                         testing::Values(std::pair{"bunny.obj", 0.5}, std::pair{"fandisk.off", 1.0},
-                                         std::pair{"camel.off", 3.0}, std::pair{"mannequin.off", 1.1},
-                                         std::pair{"head.off", 1.3}));
+                         testing::Values(NameAndMedian{"bunny.obj", 0.5}, NameAndMedian{"fandisk.off", 1.0},
+                                         NameAndMedian{"camel.off", 3.0}, NameAndMedian{"mannequin.off", 1.1},
+                                         NameAndMedian{"head.off", 1.3}));
 
 TEST(SphereMap, RefusesWhatIsNoSphere)
 {
