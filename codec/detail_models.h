@@ -51,8 +51,8 @@ struct Surroundings
 
 /// Whether a detail that was 0 down to the bit before is not any more.
 template <unsigned Orientation, class Coder>
-bool codeGrowth(Coder& coder, DetailModels& models, unsigned level, const Surroundings& s,
-                unsigned component, bool grows)
+bool codeGrowth(Coder& coder, DetailModels& models, unsigned level, const Surroundings& s, unsigned component,
+                bool grows)
 {
     constexpr unsigned o = Orientation;
     const unsigned d = component == 0 ? 0 : 1;

@@ -51,15 +51,16 @@ bool codeBlocks(Coder& coder, DetailModels& models, DetailLevels& levels, unsign
     return true;
 }
 
-/// Codes one more bit of the details of a band of a level. What does not change within a band is known when this is
-/// compiled, or kept by value: stores of magnitudes, which are bytes, may alias all that is behind a pointer.
+/// Codes one more bit of the details of a band of a level. What does not change within a band is known when
+/// this is compiled, or kept by value: stores of magnitudes, which are bytes, may alias all that is behind a
+/// pointer.
 template <unsigned Orientation, bool HasChildren, class Coder, class Whole> class BandPass
 {
 public:
     BandPass(Coder& coder, DetailModels& models, DetailLevels& levels, const GluedBorder* glued,
              unsigned components, unsigned l, unsigned pass, const Whole& whole)
-        : coder_(coder), models_(models), level_(levels.level[l]), glued_(glued), whole_(whole), l_(l), pass_(pass),
-          components_(components), n_(level_.size), side_(BlockMap::side(n_)),
+        : coder_(coder), models_(models), level_(levels.level[l]), glued_(glued), whole_(whole), l_(l),
+          pass_(pass), components_(components), n_(level_.size), side_(BlockMap::side(n_)),
           row_(static_cast<std::ptrdiff_t>(codedPitch(n_))),
           parentRow_(static_cast<std::ptrdiff_t>(codedPitch(n_ / 2 + 1))),
           childRow_(static_cast<std::ptrdiff_t>(codedPitch(2 * n_ - 1)))
@@ -120,10 +121,11 @@ private:
     bool codePlace(std::uint32_t i, std::uint32_t j, unsigned filled)
     {
         const std::size_t index = codedIndex(n_, i, j);
-        const std::size_t parent =
-            (j / 4 * 2 + j % 2 + kCodedMargin) * static_cast<std::size_t>(parentRow_) + i / 4 * 2 + i % 2 + kCodedMargin;
+        const std::size_t parent = (j / 4 * 2 + j % 2 + kCodedMargin) * static_cast<std::size_t>(parentRow_) +
+                                   i / 4 * 2 + i % 2 + kCodedMargin;
         const std::size_t children =
-            (j / 2 * 4 + j % 2 + kCodedMargin) * static_cast<std::size_t>(childRow_) + i / 2 * 4 + i % 2 + kCodedMargin;
+            (j / 2 * 4 + j % 2 + kCodedMargin) * static_cast<std::size_t>(childRow_) + i / 2 * 4 + i % 2 +
+            kCodedMargin;
         for (unsigned c = 0; c < components_; ++c) {
             if ((filled >> (c == 0 ? 0 : 1) & 1u) == 0) continue;
             const Surroundings around = surroundings(c, index, parent, children);
@@ -138,7 +140,7 @@ private:
             } else if (codeGrowth<Orientation>(coder_, models_, l_, around, c, size != 0)) {
                 const bool negative =
                     codeDetailSign<Orientation>(coder_, models_, row_, q_[c] + index,
-                                   l_ == 0 ? nullptr : parentQ_[c] + parent, c, exact < 0);
+                                                l_ == 0 ? nullptr : parentQ_[c] + parent, c, exact < 0);
                 more = negative ? -(1 << pass_) : 1 << pass_;
             }
             if (coder_.hasEnded()) return false;
@@ -149,7 +151,8 @@ private:
         return true;
     }
 
-    Surroundings surroundings(unsigned component, std::size_t index, std::size_t parent, std::size_t children) const
+    Surroundings surroundings(unsigned component, std::size_t index, std::size_t parent,
+                              std::size_t children) const
     {
         const std::ptrdiff_t row = row_, two = 2 * row;
         const std::uint8_t* q = known_[component] + index;
@@ -159,7 +162,8 @@ private:
         s.diagonals = unsigned{q[-two - 2]} + q[-two + 2] + q[two - 2] + q[two + 2];
         s.farther = unsigned{q[-4]} + q[4] + q[-2 * two] + q[2 * two];
         // Of the other bands.
-        s.siblings = Orientation == Diagonal ? 0u : unsigned{q[-row - 1]} + q[-row + 1] + q[row - 1] + q[row + 1];
+        s.siblings =
+            Orientation == Diagonal ? 0u : unsigned{q[-row - 1]} + q[-row + 1] + q[row - 1] + q[row + 1];
         if (Orientation != Vertical) s.siblings += unsigned{q[-row]} + q[row];
         if (Orientation != Horizontal) s.siblings += unsigned{q[-1]} + q[1];
         s.parents = 0;
@@ -197,9 +201,15 @@ template <bool HasChildren, class Coder, class Whole>
 bool codeBands(Coder& coder, DetailModels& models, DetailLevels& levels, const GluedBorder* glued,
                unsigned components, unsigned l, unsigned pass, const Whole& whole)
 {
-    return BandPass<Horizontal, HasChildren, Coder, Whole>(coder, models, levels, glued, components, l, pass, whole).run() &&
-           BandPass<Vertical, HasChildren, Coder, Whole>(coder, models, levels, glued, components, l, pass, whole).run() &&
-           BandPass<Diagonal, HasChildren, Coder, Whole>(coder, models, levels, glued, components, l, pass, whole).run();
+    return BandPass<Horizontal, HasChildren, Coder, Whole>(coder, models, levels, glued, components, l, pass,
+                                                           whole)
+               .run() &&
+           BandPass<Vertical, HasChildren, Coder, Whole>(coder, models, levels, glued, components, l, pass,
+                                                         whole)
+               .run() &&
+           BandPass<Diagonal, HasChildren, Coder, Whole>(coder, models, levels, glued, components, l, pass,
+                                                         whole)
+               .run();
 }
 
 /// Codes one more bit of all details.

@@ -37,8 +37,8 @@ struct Source
     std::uint32_t normalGrid = 0;            ///< 0: no normals; otherwise as grid
     std::span<const float> normals;          ///< 3 normalGrid^2 numbers, vectors of unit length
     std::vector<AttributeSource> attributes; ///< at most 16, no two of one name
-    /// Of the geometry's levels so many of the finest hold no details: samples lie smoothly between the coarser ones. Of
-    /// surface coding alone.
+    /// Of the geometry's levels so many of the finest hold no details: samples lie smoothly between the
+    /// coarser ones. Of surface coding alone.
     unsigned smoothLevels = 0;
 };
 
@@ -94,7 +94,8 @@ public:
     /// The encoder of samples that have slid: once a round the surface is coded at a step and its targets
     /// are moved. What slides along the surface need not be coded, so that a file of the same size comes
     /// nearer.
-    /// @param octaves  how much coarser than `step` each round's is, in octaves: coarser ones are for prefixes
+    /// @param octaves  how much coarser than `step` each round's is, in octaves: coarser ones are for
+    /// prefixes
     Outcome<Encoder> slid(float step, std::span<const int> octaves, const Retarget& retarget) const;
 
     /// The best file of at most `target` bytes; at most max(1 %, 24 bytes) smaller.

@@ -109,17 +109,16 @@ template <unsigned Count> struct MixWeights
 
     Lanes weight;
 
-    MixWeights()
-    {
-        setAll(std::make_integer_sequence<unsigned, Count>());
-    }
+    MixWeights() { setAll(std::make_integer_sequence<unsigned, Count>()); }
 
 private:
-    template <unsigned... K> void setAll(std::integer_sequence<unsigned, K...>) { (weight.set<K>(kStart), ...); }
+    template <unsigned... K> void setAll(std::integer_sequence<unsigned, K...>)
+    {
+        (weight.set<K>(kStart), ...);
+    }
 };
 
-template <unsigned... K>
-Lanes stretched(BitModel* const* models, std::integer_sequence<unsigned, K...>)
+template <unsigned... K> Lanes stretched(BitModel* const* models, std::integer_sequence<unsigned, K...>)
 {
     Lanes lanes;
     (lanes.set<K>(kStretch.value[models[K]->zero() >> 3]), ...);

@@ -13,10 +13,10 @@ constexpr std::size_t normalScratch(std::uint32_t grid)
     return 6 * (std::size_t{grid} + 1) + 3 * std::size_t{borderSize(grid)};
 }
 
-/// Unit normals of the surface at the samples of a level: of the area vectors of the cells around a point, glued ones
-/// too, summed. A cell's area vector is half the cross product of its diagonals, whichever of them splits it; so this is
-/// the area-weighted mean of the normals of its triangles, where each cell counts as a whole. (0, 0, 1) where
-/// the sum vanishes.
+/// Unit normals of the surface at the samples of a level: of the area vectors of the cells around a point,
+/// glued ones too, summed. A cell's area vector is half the cross product of its diagonals, whichever of them
+/// splits it; so this is the area-weighted mean of the normals of its triangles, where each cell counts as a
+/// whole. (0, 0, 1) where the sum vanishes.
 /// @param grid      samples a side of the level
 /// @param stride    from one sample of the level to the next, in the finest grid
 /// @param fineGrid  samples a side of the finest grid

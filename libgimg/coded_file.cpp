@@ -36,7 +36,8 @@ Result<std::optional<SurfaceDistance>> distanceOf(std::span<const std::uint8_t> 
 
 double CodedFile::worth() const
 {
-    return std::accumulate(prefixPsnr.begin(), prefixPsnr.end(), psnr) / static_cast<double>(1 + prefixPsnr.size());
+    return std::accumulate(prefixPsnr.begin(), prefixPsnr.end(), psnr) /
+           static_cast<double>(1 + prefixPsnr.size());
 }
 
 Result<CodedFile> judged(Result<codec::EncodedFile> encoded, const SurfaceMeasure& measure)

@@ -17,7 +17,8 @@ std::vector<int> inTurn(int rounds, int deepest)
 std::vector<int> downOnce(int rounds, int deepest)
 {
     std::vector<int> octaves;
-    for (int round = 0; round < rounds; ++round) octaves.push_back((deepest + 1) * (rounds - 1 - round) / rounds);
+    for (int round = 0; round < rounds; ++round)
+        octaves.push_back((deepest + 1) * (rounds - 1 - round) / rounds);
     return octaves;
 }
 

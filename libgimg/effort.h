@@ -9,7 +9,7 @@ namespace gimg {
 /// What EncodeOptions::effort and progressive stand for.
 struct Effort
 {
-    int fitRounds;    ///< see FitOptions
+    int fitRounds; ///< see FitOptions
     /// Ways to slide, of which the best is taken: octaves by which the steps of the rounds are coarser, see
     /// codec::Encoder::slid. Empty: samples stay where they are.
     std::vector<std::vector<int>> slides;

@@ -80,7 +80,8 @@ bool isSearched(EncodeTarget target)
 
 bool isBetter(const CodedFile& file, const CodedFile& than, EncodeTarget target)
 {
-    return target == EncodeTarget::Bytes ? file.worth() > than.worth() : file.bytes.size() < than.bytes.size();
+    return target == EncodeTarget::Bytes ? file.worth() > than.worth()
+                                         : file.bytes.size() < than.bytes.size();
 }
 
 constexpr int kSmallestGrid = 129, kLargestGrid = 513; // that are chosen where the grid is left open
@@ -220,8 +221,9 @@ std::optional<Error> objectionTo(const EncodeOptions& options)
         return bad("effort " + std::to_string(options.effort) + " is not from 1 to 9");
     if (options.smoothLevels < 0 || (options.grid != 0 && (options.grid - 1) >> options.smoothLevels < 2))
         return bad(std::to_string(options.smoothLevels) + " smooth levels are more than the grid has");
-    if (options.smoothLevels > 0 && (options.coding != LossyCoding::Surface || options.target == EncodeTarget::Raw12 ||
-                                     options.target == EncodeTarget::RawFloat))
+    if (options.smoothLevels > 0 &&
+        (options.coding != LossyCoding::Surface || options.target == EncodeTarget::Raw12 ||
+         options.target == EncodeTarget::RawFloat))
         return bad("smooth levels are for the surface coding");
     if (options.features && !options.fit) return bad("grid lines along sharp edges need the fit");
     if (options.normals != 0 && !isImageSize(options.normals))
@@ -341,7 +343,8 @@ Result<EncodedMesh> MeshEncoder::encodeAtAmpleGrid(const EncodeGoal& goal) const
 }
 
 Result<CodedFile> MeshEncoder::Prepared::codeFor(const EncodeGoal& goal, Precision precision,
-                                                 const codec::Encoder& encoder, const EncodeProgress& told) const
+                                                 const codec::Encoder& encoder,
+                                                 const EncodeProgress& told) const
 {
     Result<CodedFile> coded = gimg::codeFor(goal, precision, encoder, measure, told);
     if (coded && effort.prefixes && goal.target == EncodeTarget::Bytes)
@@ -358,8 +361,8 @@ Result<std::optional<CodedFile>> MeshEncoder::Prepared::codeSlid(const GridEncod
     return slid ? std::optional(std::move(*slid)) : std::nullopt;
 }
 
-// Slides in all ways that the effort knows, side by side, and keeps the best. Qualities have no prefixes to compare: they
-// take the first way.
+// Slides in all ways that the effort knows, side by side, and keeps the best. Qualities have no prefixes to
+// compare: they take the first way.
 Result<std::optional<CodedFile>> MeshEncoder::Prepared::codeSlides(GridEncoders::Slide& slide, float step,
                                                                    const EncodeGoal& goal) const
 {
@@ -388,8 +391,7 @@ Result<CodedFile> MeshEncoder::Prepared::codeOnceSlid(const codec::Encoder& stil
 {
     constexpr double kMuchLarger = 1.05;
     const bool exact = goal.target == EncodeTarget::Bytes;
-    Result<CodedFile> unslid =
-        codeFor(goal, exact ? Precision::File : Precision::Step, still, progress);
+    Result<CodedFile> unslid = codeFor(goal, exact ? Precision::File : Precision::Step, still, progress);
     if (!unslid) return unslid;
     Result<std::optional<CodedFile>> slid = codeSlides(slide, stepToMeet(goal, *unslid), goal);
     if (!slid) return slid.error();
@@ -419,9 +421,8 @@ Result<CodedFile> MeshEncoder::Prepared::codeSliding(const GridEncoders::Sampled
         if (const Status fitted = slide->refit(images->geometry); !fitted) return fitted.error();
         const GridEncoders::Slide refitted = *slide; // sharp edges fare better without sliding
         std::optional<Result<std::optional<CodedFile>>> coded[2];
-        tbb::parallel_invoke(
-            [&] { coded[0] = codeSlid(refitted, goal, {}); },
-            [&] { coded[1] = codeSlides(*slide, best->step, goal); });
+        tbb::parallel_invoke([&] { coded[0] = codeSlid(refitted, goal, {}); },
+                             [&] { coded[1] = codeSlides(*slide, best->step, goal); });
         for (auto& made : coded) {
             if (!*made) return made->error();
             if (**made && isBetter(***made, *best, goal.target)) best = std::move(***made);

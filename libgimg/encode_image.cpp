@@ -109,10 +109,9 @@ Result<MeshEncoder> MeshEncoder::prepareImage(const FloatImage& image, const Enc
     out.seconds.sample = watch.lap();
     SurfaceMeasure measure(options.reference ? *options.reference : open);
     out.seconds.code = watch.lap();
-    return MeshEncoder(
-        std::make_unique<const Prepared>(Prepared{std::move(out), false, false, Effort::of(options),
-                                                  std::make_unique<GridEncoders>(std::move(source)),
-                                                  std::move(measure), options.progress, options.threads}));
+    return MeshEncoder(std::make_unique<const Prepared>(Prepared{
+        std::move(out), false, false, Effort::of(options), std::make_unique<GridEncoders>(std::move(source)),
+        std::move(measure), options.progress, options.threads}));
 }
 
 Result<EncodedMesh> encodeImage(const FloatImage& image, const EncodeOptions& options, double tolerance)

@@ -56,7 +56,8 @@ Result<std::shared_ptr<const GridEncoders::Sampled>> GridEncoders::at(int grid, 
     const double fitSeconds = watch.lap();
     Result<std::vector<SampledAttribute>> attributes = attributesAt(*geometry);
     if (!attributes) return attributes.error();
-    Result<codec::Encoder> encoder = encoderOf(source_.seam, *geometry, normals, *attributes, source_.smoothLevels);
+    Result<codec::Encoder> encoder =
+        encoderOf(source_.seam, *geometry, normals, *attributes, source_.smoothLevels);
     if (!encoder) return encoder.error();
     const double length = seamLength(source_.seam, *geometry);
     made =
@@ -110,9 +111,10 @@ Result<GridEncoders::Slide> GridEncoders::slide(const Sampled& sampled)
 
 Status GridEncoders::Slide::move(float step, std::span<const int> octaves)
 {
-    Result<codec::Encoder> moved = resultOf(encoder_.slid(
-        step, octaves,
-        [this](std::span<const float> decoded, std::span<float> targets) { slide_(decoded, targets); }));
+    Result<codec::Encoder> moved = resultOf(
+        encoder_.slid(step, octaves, [this](std::span<const float> decoded, std::span<float> targets) {
+            slide_(decoded, targets);
+        }));
     if (!moved) return moved.error();
     encoder_ = std::move(*moved);
     return Done{};

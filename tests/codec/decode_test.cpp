@@ -382,8 +382,8 @@ TEST(Mesh, NormalsAreThoseOfTheTorusAtEveryLevelAndAcrossTheSeam)
         double before = 0;
         for (std::uint32_t level = 0; level < 3; ++level) {
             std::vector<float> normals(xyz.size(), 7);
-            ASSERT_EQ(gim_estimate_normals(bytes.data(), bytes.size(), nullptr, 0, level, work.data(), work.size(),
-                                           xyz.data(), normals.data()),
+            ASSERT_EQ(gim_estimate_normals(bytes.data(), bytes.size(), nullptr, 0, level, work.data(),
+                                           work.size(), xyz.data(), normals.data()),
                       GIM_OK);
             double worst = 0;
             for (std::uint32_t j = 0; j < grid; ++j)
@@ -394,7 +394,8 @@ TEST(Mesh, NormalsAreThoseOfTheTorusAtEveryLevelAndAcrossTheSeam)
                         ASSERT_EQ(n[0], 7) << "left alone";
                         continue;
                     }
-                    const double x = n[1] * double{e[2]} - n[2] * double{e[1]}, y = n[2] * double{e[0]} - n[0] * double{e[2]},
+                    const double x = n[1] * double{e[2]} - n[2] * double{e[1]},
+                                 y = n[2] * double{e[0]} - n[0] * double{e[2]},
                                  z = n[0] * double{e[1]} - n[1] * double{e[0]};
                     worst = std::max(worst, std::sqrt(x * x + y * y + z * z));
                     EXPECT_GT(n[0] * e[0] + n[1] * e[1] + n[2] * e[2], 0.9);

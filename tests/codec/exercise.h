@@ -65,7 +65,8 @@ inline gim_status exerciseDecoder(const std::uint8_t* bytes, std::size_t size, s
                                      normals.data()) != GIM_OK)
                 std::abort();
             for (const std::uint32_t s : vertices) {
-                const float *n = &normals[3 * std::size_t{s}], length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
+                const float *n = &normals[3 * std::size_t{s}],
+                            length = n[0] * n[0] + n[1] * n[1] + n[2] * n[2];
                 if (!(length > 0.999f && length < 1.001f)) std::abort();
             }
         }

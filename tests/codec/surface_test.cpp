@@ -212,7 +212,8 @@ TEST(SurfaceCoding, EmptyBlocksTakeAlmostNothing)
     EXPECT_LT(bytes(257), 2.3 * bytes(33));
 }
 
-// Samples that no detail was coded for lie as near to the torus as those between which they lie, across the seam too.
+// Samples that no detail was coded for lie as near to the torus as those between which they lie, across the
+// seam too.
 TEST(SurfaceSmoothLevels, LieBetweenTheCodedSamples)
 {
     const std::uint32_t grid = 129, every = 4;

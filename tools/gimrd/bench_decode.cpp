@@ -67,8 +67,8 @@ gim_status GimDecoder::findNormals()
     if (info_.normal_grid != 0)
         return gim_decode_normals(file_.data(), file_.size(), nullptr, 0, workspace_.data(),
                                   workspace_.size(), normals_.data());
-    return gim_estimate_normals(file_.data(), file_.size(), nullptr, 0, 0, workspace_.data(), workspace_.size(),
-                                xyz_.data(), normals_.data());
+    return gim_estimate_normals(file_.data(), file_.size(), nullptr, 0, 0, workspace_.data(),
+                                workspace_.size(), xyz_.data(), normals_.data());
 }
 
 Result<DecodeTimes> GimDecoder::run()

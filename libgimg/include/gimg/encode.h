@@ -87,13 +87,13 @@ struct EncodeOptions : EncodeGoal
     bool fit = true; ///< move the samples to where the triangles between them fit the mesh, see fitGeometry
     bool features = false; ///< lay grid lines along sharp edges, see followFeatures; needs `fit`.
                            ///< For lossy files without FeatureOptions::ease
-    /// So many of the finest levels hold no details, but lie smoothly between the samples of the coarser ones: a fine mesh of
-    /// few bytes. Without, details are left out where they are not worth their bytes.
+    /// So many of the finest levels hold no details, but lie smoothly between the samples of the coarser
+    /// ones: a fine mesh of few bytes. Without, details are left out where they are not worth their bytes.
     int smoothLevels = 0;
-    int effort = 7;        ///< 1 to 9: time for quality, see docs/effort.md
-    /// Files are chosen by what half and a quarter of them are worth, too, and samples slide for those: prefixes are
-    /// nearer, the whole file is not (docs/codec.md). For numbers of bytes; takes twice as long. Any file of the
-    /// surface coding can be cut short.
+    int effort = 7; ///< 1 to 9: time for quality, see docs/effort.md
+    /// Files are chosen by what half and a quarter of them are worth, too, and samples slide for those:
+    /// prefixes are nearer, the whole file is not (docs/codec.md). For numbers of bytes; takes twice as long.
+    /// Any file of the surface coding can be cut short.
     bool progressive = false;
     /// What PSNR and errors are against, while the encoder is prepared; null: the mesh itself.
     const Mesh* reference = nullptr;

@@ -25,8 +25,8 @@ PolyhedralSurface polyhedralSurface(const Mesh& mesh);
 /// do not count.
 /// Errors: EmptyMesh; BadArgument for an index out of range, lengths that are not one a halfedge or differ on
 /// twins, or faces that are orientable but not oriented alike; NotFinite; NonManifoldEdge; NotOrientable;
-/// NotClosed; NonManifoldVertex; SeveralComponents; ZeroAreaFace where a face has a vertex twice, or a side as
-/// long as the other two together up to rounding.
+/// NotClosed; NonManifoldVertex; SeveralComponents; ZeroAreaFace where a face has a vertex twice, or a side
+/// as long as the other two together up to rounding.
 Result<Topology> closedTopology(const PolyhedralSurface& surface);
 
 } // namespace gimg
