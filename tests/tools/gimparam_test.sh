@@ -95,6 +95,11 @@ expect "flipped" 0 "$(reported flipped)"
 run sphere --json "$work/report.json" "$work/sphere.ply" "$work/ball.ply"
 expect flipped 0 "$(reported flipped)"
 within "mass centre" 0 1e-6 "$(reported mass_centre)"
+run sphere --close-holes 300% --json "$work/report.json" "$work/cylinder.ply" "$work/ball.ply"
+expect "holes closed" 2 "$(reported holes_closed)"
+expect flipped 0 "$(reported flipped)"
+refused 1 "$gimparam" sphere --close-holes 1% "$work/cylinder.ply" "$work/ball.ply"
+refused 2 "$gimparam" sphere --close-holes 0 "$work/cylinder.ply" "$work/ball.ply"
 
 # Exit codes, with one line on standard error each.
 refused 1 "$gimparam" "$work/absent.ply" "$work/map.ply"

@@ -46,31 +46,12 @@ void addTopologyOptions(CLI::App& app, Arguments& a)
            },
            "remove handles, smallest first, down to this genus; auto: those that are noise")
         ->type_name("G|auto");
-    app.add_option_function<std::string>(
-           "--close-holes",
-           [&a](const std::string& text) {
-               a.closeHoles = MeshLength::parse(text);
-               if (!a.closeHoles)
-                   throw CLI::ValidationError("--close-holes", text + " is not a positive length or N%");
-           },
-           "close boundary loops up to this long, in the mesh's unit or % of the bounding box's diagonal")
-        ->type_name("LENGTH|N%");
+    cli::addMeshLength(
+        app, "--close-holes", a.closeHoles,
+        "close boundary loops up to this long, in the mesh's unit or % of the bounding box's diagonal");
 }
 
 } // namespace
-
-std::string MeshLength::text() const { return shortest(number) + (percent ? "%" : ""); }
-
-std::optional<MeshLength> MeshLength::parse(const std::string& text)
-{
-    MeshLength length;
-    length.percent = text.ends_with('%');
-    const char* const last = text.data() + text.size() - (length.percent ? 1 : 0);
-    const auto [end, error] = std::from_chars(text.data(), last, length.number);
-    if (error != std::errc() || end != last || !(length.number > 0) || !std::isfinite(length.number))
-        return std::nullopt;
-    return length;
-}
 
 void addOptions(CLI::App& app, Arguments& a)
 {

@@ -1,6 +1,7 @@
 #pragma once
 
 #include "../cli.h"
+#include "../mesh_length.h"
 
 #include "gimg/encode.h"
 #include "gimg/mesh_io.h"
@@ -11,17 +12,7 @@
 
 namespace gimg::gimenc {
 
-/// A length on the command line: in the mesh's unit, or in percent of the diagonal of its bounding box.
-struct MeshLength
-{
-    double number = 0;
-    bool percent = false;
-
-    double of(double diagonal) const { return percent ? number / 100 * diagonal : number; }
-    std::string text() const; ///< the shortest that reads back the same
-    /// "0.5", "2%"; positive and finite.
-    static std::optional<MeshLength> parse(const std::string& text);
-};
+using cli::MeshLength;
 
 /// One file to make: from what, and how.
 struct Arguments
