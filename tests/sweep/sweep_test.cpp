@@ -69,10 +69,10 @@ protected:
         fs::permissions(place, fs::perms::owner_all);
     }
     // What such a script does to deliver its input, in a file of $SIZE bytes.
-    static std::string deliver(const std::string& size = "$N")
+    static std::string deliver(const std::string& size = "$N", const std::string& decode = "cp $INPUT")
     {
-        return "head -c " + size +
-               " /dev/zero > $OUT/$N.bin; cp $INPUT $OUT/$N.ply; "
+        return "head -c " + size + " /dev/zero > $OUT/$N.bin; " + decode +
+               " $OUT/$N.ply; "
                "echo \"{\\\"target\\\":$N,\\\"bytes\\\":$(wc -c < $OUT/$N.bin),\\\"file\\\":\\\"$N.bin\\\","
                "\\\"decoded\\\":\\\"$N.ply\\\",\\\"settings\\\":{}}\"";
     }
@@ -263,8 +263,8 @@ TEST_F(Sweep, FailingMeshDoesNotStopTheOthers)
 TEST_F(Sweep, AGridTooSmallForTheCutIsNoFailure)
 {
     mesh("ladder.ply", shapes::surfaceOfGenus(7, 0, 4));
-    const Ended ended =
-        run("ladder.ply ring.ply --bytes 900 --grids 9 --samples 2000 --coders none --peers raw-zlib --out o");
+    const Ended ended = run(
+        "ladder.ply ring.ply --bytes 900 --grids 9 --samples 2000 --coders none --peers raw-zlib --out o");
     EXPECT_EQ(ended.code, 0) << ended.err;
     const nlohmann::json ladder = point("o/points/ladder/raw-zlib-9-900.json");
     EXPECT_EQ(ladder.at("state"), "unreachable");
@@ -281,7 +281,7 @@ TEST_F(Sweep, CodersThatMisbehaveAreReported)
     script("lazy", ":");
     script("strange",
            "echo '{\"target\":500,\"bytes\":4,\"file\":\"../x\",\"decoded\":\"y\",\"settings\":{}}'");
-    script("empty", deliver() + "; : > $OUT/$N.ply");
+    script("empty", deliver("$N", ": >"));
     script("small", "echo \"{\\\"target\\\":$N,\\\"unreachable\\\":\\\"too small\\\"}\"");
     script("copy", deliver());
     const std::string peers = "--peers copy,crash,empty,garbage,large,lazy,liar,small,strange ";
