@@ -216,6 +216,17 @@ ReadStatus openLevel(const File& file, std::uint32_t flags, std::uint32_t level,
     return ReadStatus::Ok;
 }
 
+/// The file and a level of it, with all the workspace that the file asks for.
+ReadStatus openFileAndLevel(const void* bytes, std::size_t size, const gim_limits* limits,
+                            std::uint32_t flags, std::uint32_t level, std::size_t workspaceSize, Arena& arena,
+                            File* file, Level* out)
+{
+    const ReadStatus status = openFile(bytes, size, limits, (flags & GIM_PREFIX) != 0, file);
+    if (status != ReadStatus::Ok) return status;
+    if (workspaceSize < file->workspace) return ReadStatus::Misuse;
+    return openLevel(*file, flags, level, arena, out);
+}
+
 } // namespace
 
 extern "C" {
@@ -351,13 +362,11 @@ gim_status gim_estimate_normals(const void* bytes, size_t size, const gim_limits
                                 float* normals)
 {
     if (workspace == nullptr || xyz == nullptr || normals == nullptr) return GIM_MISUSE;
-    File file;
-    ReadStatus status = openFile(bytes, size, limits, (flags & GIM_PREFIX) != 0, &file);
-    if (status != ReadStatus::Ok) return toPublic(status);
-    if (workspace_size < file.workspace) return GIM_MISUSE;
     Arena arena(workspace, workspace_size);
+    File file;
     Level open;
-    status = openLevel(file, flags, level, arena, &open);
+    const ReadStatus status =
+        openFileAndLevel(bytes, size, limits, flags, level, workspace_size, arena, &file, &open);
     if (status != ReadStatus::Ok) return toPublic(status);
     auto* scratch = arena.take<double>(normalScratch(open.grid));
     if (scratch == nullptr) return GIM_MISUSE;
@@ -430,13 +439,11 @@ gim_status gim_build_mesh(const void* bytes, size_t size, const gim_limits* limi
                           uint32_t* vertex_of_sample, uint32_t* sample_of_vertex, uint32_t* triangles)
 {
     if (workspace == nullptr || (xyz == nullptr && triangles != nullptr)) return GIM_MISUSE;
-    File file;
-    ReadStatus status = openFile(bytes, size, limits, (flags & GIM_PREFIX) != 0, &file);
-    if (status != ReadStatus::Ok) return toPublic(status);
-    if (workspace_size < file.workspace) return GIM_MISUSE;
     Arena arena(workspace, workspace_size);
+    File file;
     Level open;
-    status = openLevel(file, flags, level, arena, &open);
+    const ReadStatus status =
+        openFileAndLevel(bytes, size, limits, flags, level, workspace_size, arena, &file, &open);
     if (status != ReadStatus::Ok) return toPublic(status);
     auto* scratch = arena.take<std::uint32_t>(borderSize(open.grid));
     if (vertex_of_sample == nullptr)

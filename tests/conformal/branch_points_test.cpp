@@ -1,5 +1,6 @@
 #include "gimg/global_parameterization.h"
 
+#include "forms_of.h"
 #include "shapes.h"
 
 #include <gtest/gtest.h>
@@ -10,12 +11,7 @@
 namespace gimg {
 namespace {
 
-SurfaceForms formsOf(const Mesh& mesh)
-{
-    Result<SurfaceForms> forms = surfaceForms(mesh);
-    EXPECT_TRUE(forms.ok()) << forms.error().message;
-    return std::move(*forms);
-}
+using test::formsOf;
 
 BranchPoints branchesOf(const Mesh& mesh, const ComplexOneForm& form)
 {

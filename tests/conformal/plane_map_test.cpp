@@ -1,5 +1,6 @@
 #include "gimg/global_parameterization.h"
 
+#include "forms_of.h"
 #include "shapes.h"
 
 #include <Eigen/LU>
@@ -11,12 +12,7 @@
 namespace gimg {
 namespace {
 
-SurfaceForms formsOf(const Mesh& mesh)
-{
-    Result<SurfaceForms> forms = surfaceForms(mesh);
-    EXPECT_TRUE(forms.ok()) << forms.error().message;
-    return std::move(*forms);
-}
+using test::formsOf;
 
 PlaneMap planeOf(const Mesh& mesh, const ComplexOneForm& form)
 {

@@ -1,5 +1,6 @@
 #include "gimg/global_parameterization.h"
 
+#include "forms_of.h"
 #include "shapes.h"
 
 #include <gtest/gtest.h>
@@ -12,12 +13,7 @@
 namespace gimg {
 namespace {
 
-SurfaceForms formsOf(const Mesh& mesh)
-{
-    Result<SurfaceForms> forms = surfaceForms(mesh);
-    EXPECT_TRUE(forms.ok()) << forms.error().message;
-    return std::move(*forms);
-}
+using test::formsOf;
 
 // d(x + i y) of a flat plate scales nothing; d(x + 2 i y) scales areas by (1 + 4) / 2.
 TEST(ConformalFactor, OfPlainForms)
