@@ -184,6 +184,20 @@ struct NoDetails
     std::int32_t operator()(unsigned, unsigned, std::size_t) const { return 0; }
 };
 
+/// @return false: not all are finite floats
+bool storeFloats(const double* const (&planes)[kComponents], std::size_t samples, float* out)
+{
+    bool allFit = true;
+    for (std::size_t k = 0; k < samples; ++k)
+        for (unsigned c = 0; c < kComponents; ++c) {
+            const double value = planes[c][k];
+            const bool fits = (value <= kLargestFloat) & (value >= -kLargestFloat);
+            allFit &= fits;
+            out[kComponents * k + c] = static_cast<float>(fits ? value : 0.0);
+        }
+    return allFit;
+}
+
 ReadStatus decodeSurface(const ImageHeader& header, const SeamView& seam, const std::uint32_t* classes,
                          Arena& arena, float* out)
 {
@@ -199,14 +213,8 @@ ReadStatus decodeSurface(const ImageHeader& header, const SeamView& seam, const 
     const SurfaceFrames frames(surfaceParameters(header));
     CodedDetails details(frames, memory.levels);
     buildSurface(frames, border, coarse.coarse, memory.work, details);
-    const std::size_t samples = samplesOf(header.grid);
-    for (unsigned c = 0; c < kComponents; ++c)
-        for (std::size_t k = 0; k < samples; ++k) {
-            const double value = memory.work.surface[c][k];
-            if (!(value <= kLargestFloat && value >= -kLargestFloat)) return ReadStatus::Corrupt;
-            out[kComponents * k + c] = static_cast<float>(value);
-        }
-    return ReadStatus::Ok;
+    return storeFloats(memory.work.surface, samplesOf(header.grid), out) ? ReadStatus::Ok
+                                                                         : ReadStatus::Corrupt;
 }
 
 // Decodes a field's channels by threes.

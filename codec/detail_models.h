@@ -7,7 +7,8 @@ namespace gimg::codec {
 
 /// Details along the normal, and along the two tangents, are coded with models of their own.
 constexpr unsigned kDirections = 2;
-constexpr unsigned kGrowthModels = 5, kSignModels = 4, kBlockModels = 3;
+constexpr unsigned kGrowthModels = 4, kRunModels = 3, kSignModels = 3, kBlockModels = 3;
+constexpr unsigned kRun = 4;   ///< places in a row of a block whose zeros are told at once
 constexpr unsigned kSizes = 4; ///< classes of magnitudes that are refined
 
 /// Models of the bits of details.
@@ -20,19 +21,24 @@ struct DetailModels
     BitModel blockByRing[kDirections][2][10][14];
     MixWeights<kBlockModels> blockWeights[kDirections][2];
 
+    BitModel lonelyRun[kLevels][3];
+    BitModel runFamily[10][14][3];
+    BitModel runBelow[8][14];
+    BitModel runByLevel[kLevels][3][14];
+    MixWeights<kRunModels> runWeights[3];
+    BitModel firstOfRun[kRun - 1][6][6];
+
     BitModel lonely[kLevels][3][kDirections];
     BitModel near[8][8][8][kDirections];
-    BitModel everything[24][kComponents][2];
+    BitModel everything[24][kComponents][kLevels];
     BitModel family[10][12][3][kDirections];
-    BitModel children[10][8][3][kDirections];
     BitModel wide[14][12][kDirections];
-    MixWeights<kGrowthModels> growthWeights[24][kDirections];
+    MixWeights<kGrowthModels> growthWeights[12][kDirections];
 
     BitModel next[kSizes][24];
 
     BitModel signNear[3][3][3][3][3][kDirections];
     BitModel signFamily[3][3][3][3][kDirections];
-    BitModel signFar[3][3][3][3][3][kDirections];
     BitModel signParentNear[3][3][3][3][kDirections];
     MixWeights<kSignModels> signWeights[3][kDirections];
 };
@@ -43,11 +49,31 @@ inline unsigned third(std::int64_t value) { return static_cast<unsigned>(signOf(
 /// Sums of magnitudes around a detail.
 struct Surroundings
 {
-    unsigned across, along, diagonals, farther, siblings, parents, below, others;
+    unsigned across, along, diagonals, siblings, parents, below, others;
 
     unsigned near() const { return across + along + (diagonals + 1) / 2; }
-    unsigned all() const { return 2 * (near() + others) + parents + siblings + below + farther / 2; }
+    unsigned all() const { return 2 * (near() + others) + parents + siblings + below; }
 };
+
+/// Sums of magnitudes around a run of places of which all the band's own neighbours are 0.
+struct RunSurroundings
+{
+    unsigned siblings, parents, below;
+};
+
+/// Whether any detail of such a run, all of which were 0 down to the bit before, is not any more.
+template <unsigned Orientation, class Coder>
+bool codeRunGrowth(Coder& coder, DetailModels& models, unsigned level, const RunSurroundings& s, bool grows)
+{
+    constexpr unsigned o = Orientation;
+    const unsigned sum = 2 * s.parents + s.siblings + s.below;
+    if (sum == 0) return coder.bit(models.lonelyRun[level][o], grows);
+    BitModel* const mixed[kRunModels] = {
+        &models.runFamily[quickClass<9>(s.parents)][quickClass<13>(s.siblings)][o],
+        &models.runBelow[quickClass<7>(s.below)][quickClass<13>(s.parents + s.siblings)],
+        &models.runByLevel[level][o][quickClass<13>(sum)]};
+    return codeMixed(coder, mixed, models.runWeights[o], grows);
+}
 
 /// Whether a detail that was 0 down to the bit before is not any more.
 template <unsigned Orientation, class Coder>
@@ -58,14 +84,13 @@ bool codeGrowth(Coder& coder, DetailModels& models, unsigned level, const Surrou
     const unsigned d = component == 0 ? 0 : 1;
     const unsigned sum = s.all();
     if (sum == 0) return coder.bit(models.lonely[level][o][d], grows);
-    const unsigned all = quickClass<23>(sum), near = quickClass<7>(s.near());
+    const unsigned all = quickClass<23>(sum);
     BitModel* const mixed[kGrowthModels] = {
         &models.near[quickClass<7>(s.across)][quickClass<7>(s.along)][quickClass<7>(s.diagonals)][d],
-        &models.everything[all][component][s.others != 0],
+        &models.everything[all][component][level],
         &models.family[quickClass<9>(s.parents)][quickClass<11>(s.siblings)][o][d],
-        &models.children[quickClass<9>(s.below)][near][o][d],
-        &models.wide[quickClass<13>(s.near() + s.farther)][quickClass<11>(2 * s.others + s.siblings)][d]};
-    return codeMixed(coder, mixed, models.growthWeights[all][d], grows);
+        &models.wide[quickClass<13>(s.near())][quickClass<11>(2 * s.others + s.below)][d]};
+    return codeMixed(coder, mixed, models.growthWeights[all / 2][d], grows);
 }
 
 /// The next bit of a detail that is not 0.
@@ -96,8 +121,6 @@ bool codeDetailSign(Coder& coder, DetailModels& models, std::ptrdiff_t row, cons
     BitModel* const mixed[kSignModels] = {
         &models.signNear[o][west][third(q[2])][third(q[-two])][third(q[two])][d],
         &models.signFamily[o][up][third(siblings)][west][d],
-        &models.signFar[o][sum(-two - 2, two + 2)][sum(-two + 2, two - 2)][sum(-4, 4)][sum(-2 * two, 2 * two)]
-                       [d],
         &models.signParentNear[o][up][sum(-2, 2)][sum(-two, two)][d]};
     return codeMixed(coder, mixed, models.signWeights[o][d], negative);
 }

@@ -1,8 +1,39 @@
 #pragma once
 
+#include "byte_sums.h"
 #include "detail_models.h"
 
 namespace gimg::codec {
+
+/// Sums of the coarser level's magnitudes below a block, 5 x 5, and around those, 9 x 9 without them.
+struct BlockParents
+{
+    unsigned below[kDirections] = {}, ring[kDirections] = {};
+
+    BlockParents(const DetailLevels& levels, unsigned components, unsigned l, std::uint32_t bi,
+                 std::uint32_t bj)
+    {
+        if (l == 0) return;
+        constexpr std::uint8_t kBelow[8] = {0, 0, 255, 255, 255, 255, 255, 0};
+        constexpr std::uint32_t kHalf = BlockMap::kBlock / 2;
+        const std::uint32_t m = levels.level[l].size / 2 + 1;
+        const std::uint64_t isBelow = eightBytes(kBelow);
+        for (unsigned c = 0; c < components; ++c) {
+            const std::uint8_t* row =
+                levels.level[l - 1].known[c] + codedIndex(m, bi * kHalf, bj * kHalf) - 2 * codedPitch(m) - 2;
+            ByteSums all, inner;
+            unsigned last = 0;
+            for (unsigned j = 0; j < 9; ++j, row += codedPitch(m)) {
+                const std::uint64_t eight = eightBytes(row);
+                all.add(eight);
+                last += row[8];
+                if (j >= 2 && j < 7) inner.add(eight & isBelow);
+            }
+            below[c == 0 ? 0 : 1] += inner.total();
+            ring[c == 0 ? 0 : 1] += all.total() + last - inner.total();
+        }
+    }
+};
 
 /// Codes which blocks of a level hold details that are not 0 down to the pass's bit.
 /// @param whole  see codePass()
@@ -11,31 +42,17 @@ template <class Coder, class Whole>
 bool codeBlocks(Coder& coder, DetailModels& models, DetailLevels& levels, unsigned components, unsigned l,
                 unsigned pass, const Whole& whole)
 {
-    constexpr int kHalf = BlockMap::kBlock / 2;
     const unsigned directions = components == 1 ? 1 : kDirections;
     BlockMap& blocks = levels.level[l].blocks;
-    const std::uint32_t m = levels.level[l].size / 2 + 1;
-    const auto row = static_cast<std::ptrdiff_t>(codedPitch(m));
     for (std::uint32_t bj = 0; bj < blocks.side(); ++bj)
         for (std::uint32_t bi = 0; bi < blocks.side(); ++bi) {
             if (blocks.isFilled(bi, bj, 0) && (directions == 1 || blocks.isFilled(bi, bj, 1))) continue;
-            // The coarser level's details below the block, and those one further.
-            unsigned below[kDirections] = {}, ring[kDirections] = {};
-            if (l > 0)
-                for (unsigned c = 0; c < components; ++c) {
-                    const std::uint8_t* corner =
-                        levels.level[l - 1].known[c] + codedIndex(m, bi * kHalf, bj * kHalf);
-                    for (int dj = -2; dj <= kHalf + 2; ++dj)
-                        for (int di = -2; di <= kHalf + 2; ++di) {
-                            const bool inside = di >= 0 && di <= kHalf && dj >= 0 && dj <= kHalf;
-                            (inside ? below : ring)[c == 0 ? 0 : 1] += corner[dj * row + di];
-                        }
-                }
+            const BlockParents parents(levels, components, l, bi, bj);
             unsigned before = 0;
             for (unsigned d = 0; d < directions; ++d) {
                 if (!blocks.isFilled(bi, bj, d)) {
                     const unsigned around = blocks.around(bi, bj, d);
-                    const unsigned b = quickClass<13>(below[d]), r = quickClass<13>(ring[d]);
+                    const unsigned b = quickClass<13>(parents.below[d]), r = quickClass<13>(parents.ring[d]);
                     BitModel* const mixed[kBlockModels] = {&models.blockByLevel[d][before][l][around],
                                                            &models.blockByParents[d][before][around][b],
                                                            &models.blockByRing[d][before][b < 9 ? b : 9][r]};
@@ -93,6 +110,10 @@ public:
                     }
                     if (bi + 1 == side_) --end;
                 }
+                if (filled == 1 && !onBorder && i + 2 * (kRun - 1) < end && isQuietRun(i, j)) {
+                    if (!codeRun(i, j)) return false;
+                    i += 2 * kRun;
+                }
                 for (; i < end; i += 2)
                     if (!(onBorder ? codeOnBorder(i, j, filled) : codePlace(i, j, filled))) return false;
                 if (glued_ != nullptr && Orientation == Vertical && bi + 1 == side_)
@@ -103,6 +124,94 @@ public:
     }
 
 private:
+    std::size_t parentIndex(std::uint32_t i, std::uint32_t j) const
+    {
+        return (j / 4 * 2 + j % 2 + kCodedMargin) * static_cast<std::size_t>(parentRow_) + i / 4 * 2 + i % 2 +
+               kCodedMargin;
+    }
+
+    std::size_t childIndex(std::uint32_t i, std::uint32_t j) const
+    {
+        return (j / 2 * 4 + j % 2 + kCodedMargin) * static_cast<std::size_t>(childRow_) + i / 2 * 4 + i % 2 +
+               kCodedMargin;
+    }
+
+    /// Whether the run that begins here, and all its neighbours in the band, have no detail along the normal.
+    bool isQuietRun(std::uint32_t i, std::uint32_t j) const
+    {
+        const std::uint8_t* q = known_[0] + codedIndex(n_, i, j);
+        std::uint64_t any = 0;
+        for (const std::ptrdiff_t row : {-2 * row_, std::ptrdiff_t{0}, 2 * row_})
+            any |= eightBytes(q + row - 2) | eightBytes(q + row + 2);
+        return everySecond(any) == 0;
+    }
+
+    RunSurroundings runSurroundings(std::uint32_t i, std::uint32_t j) const
+    {
+        const std::uint8_t* q = known_[0] + codedIndex(n_, i, j);
+        RunSurroundings s = {};
+        // Those of the band itself are 0, and so are the coarser level's places.
+        ByteSums siblings;
+        for (const std::ptrdiff_t row : {-row_, std::ptrdiff_t{0}, row_}) {
+            siblings.add(eightBytes(q + row - 1));
+            s.siblings += q[row + 7];
+        }
+        s.siblings += siblings.total();
+        if (l_ > 0) {
+            const std::uint8_t* p = parent_[0] + parentIndex(i, j);
+            const std::ptrdiff_t up = 2 * parentRow_;
+            s.parents = 3 * (unsigned{p[0]} + p[2]) + p[-2] + p[4] + p[-up] + p[2 - up] + p[up] + p[up + 2];
+        }
+        if (HasChildren) {
+            const std::uint8_t* p = children_[0] + childIndex(i, j);
+            ByteSums below;
+            for (const std::ptrdiff_t row : {std::ptrdiff_t{0}, 2 * childRow_})
+                for (const std::ptrdiff_t half : {0, 8}) below.add(everySecond(eightBytes(p + row + half)));
+            s.below = below.total();
+        }
+        return s;
+    }
+
+    /// Codes the details of a quiet run along the normal: whether there is any, which is the first, and
+    /// those after it like others.
+    bool codeRun(std::uint32_t i, std::uint32_t j)
+    {
+        const std::size_t index = codedIndex(n_, i, j);
+        const auto grows = [&](unsigned k) {
+            return magnitudeOf(whole_(l_, 0, index + 2 * k)) >> pass_ != 0;
+        };
+        bool any = false;
+        if (!Coder::kDecodes)
+            for (unsigned k = 0; k < kRun; ++k) any = any || grows(k);
+        any = codeRunGrowth<Orientation>(coder_, models_, l_, runSurroundings(i, j), any);
+        if (coder_.hasEnded()) return false;
+        if (!any) return true;
+
+        unsigned sums[kRun], after = 0;
+        for (unsigned k = 0; k < kRun; ++k)
+            sums[k] =
+                surroundings(0, index + 2 * k, parentIndex(i + 2 * k, j), childIndex(i + 2 * k, j)).all();
+        for (unsigned k = 1; k < kRun; ++k) after += sums[k];
+        unsigned first = 0;
+        for (; first + 1 < kRun; ++first) {
+            BitModel& model = models_.firstOfRun[first][quickClass<5>(sums[first])][quickClass<5>(after)];
+            const bool isFirst = coder_.bit(model, grows(first));
+            if (coder_.hasEnded()) return false;
+            if (isFirst) break;
+            after -= sums[first + 1];
+        }
+        const std::size_t grown = index + 2 * first;
+        const std::int32_t* parent = l_ == 0 ? nullptr : parentQ_[0] + parentIndex(i + 2 * first, j);
+        const bool negative = codeDetailSign<Orientation>(coder_, models_, row_, q_[0] + grown, parent, 0,
+                                                          whole_(l_, 0, grown) < 0);
+        if (coder_.hasEnded()) return false;
+        q_[0][grown] = negative ? -(1 << pass_) : 1 << pass_;
+        known_[0][grown] = 1;
+        for (unsigned k = first + 1; k < kRun; ++k)
+            if (!codePlace(i + 2 * k, j, 1)) return false;
+        return true;
+    }
+
     bool codeOnBorder(std::uint32_t i, std::uint32_t j, unsigned filled)
     {
         const SharedDetail shared = sharedDetail(glued_, n_, Orientation, i, j);
@@ -121,11 +230,7 @@ private:
     bool codePlace(std::uint32_t i, std::uint32_t j, unsigned filled)
     {
         const std::size_t index = codedIndex(n_, i, j);
-        const std::size_t parent = (j / 4 * 2 + j % 2 + kCodedMargin) * static_cast<std::size_t>(parentRow_) +
-                                   i / 4 * 2 + i % 2 + kCodedMargin;
-        const std::size_t children =
-            (j / 2 * 4 + j % 2 + kCodedMargin) * static_cast<std::size_t>(childRow_) + i / 2 * 4 + i % 2 +
-            kCodedMargin;
+        const std::size_t parent = parentIndex(i, j), children = childIndex(i, j);
         for (unsigned c = 0; c < components_; ++c) {
             if ((filled >> (c == 0 ? 0 : 1) & 1u) == 0) continue;
             const Surroundings around = surroundings(c, index, parent, children);
@@ -160,7 +265,6 @@ private:
         s.across = unsigned{q[-2]} + q[2];
         s.along = unsigned{q[-two]} + q[two];
         s.diagonals = unsigned{q[-two - 2]} + q[-two + 2] + q[two - 2] + q[two + 2];
-        s.farther = unsigned{q[-4]} + q[4] + q[-2 * two] + q[2 * two];
         // Of the other bands.
         s.siblings =
             Orientation == Diagonal ? 0u : unsigned{q[-row - 1]} + q[-row + 1] + q[row - 1] + q[row + 1];

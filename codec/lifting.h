@@ -17,6 +17,14 @@ namespace gimg::codec {
 /// @param work    2 borderSize(size) numbers
 void inverseLifting(double* image, std::uint32_t size, const GluedBorder* border, double* work);
 
+/// The same for a level without details, which need not be there: what is coarse comes from an image of its
+/// own.
+/// @param coarse  (size / 2 + 1)^2 numbers
+/// @param factor  that they are multiplied by
+/// @param image   size^2, for the result
+void inverseLiftingOfCoarse(const double* coarse, double factor, double* image, std::uint32_t size,
+                            const GluedBorder* border, double* work);
+
 /// Its inverse; for encoders. Samples of a class must be equal.
 void forwardLifting(double* image, std::uint32_t size, const GluedBorder* border, double* work);
 

@@ -31,6 +31,27 @@ constexpr std::uint32_t squash(int stretched)
         (kLogistic[cell] * (128 - within) + kLogistic[cell + 1] * within + 64) >> 7);
 }
 
+/// squash() of what is in range.
+struct SquashTable
+{
+    std::uint16_t value[2 * kStretchLimit + 1];
+
+    constexpr SquashTable() : value()
+    {
+        for (int k = 0; k <= 2 * kStretchLimit; ++k)
+            value[k] = static_cast<std::uint16_t>(squash(k - kStretchLimit));
+    }
+};
+inline constexpr SquashTable kSquash{};
+
+inline std::uint32_t quickSquash(int stretched)
+{
+    const int clamped = stretched > kStretchLimit    ? kStretchLimit
+                        : stretched < -kStretchLimit ? -kStretchLimit
+                                                     : stretched;
+    return kSquash.value[clamped + kStretchLimit];
+}
+
 /// stretch() of the middles of 4096 equal intervals of probability: the least number whose squash()
 /// reaches the middle.
 struct StretchTable
@@ -48,6 +69,19 @@ struct StretchTable
 };
 inline constexpr StretchTable kStretch{};
 
+/// How far a model is trusted that has seen n bits: n / (n + 1), in 2^-15.
+struct TrustTable
+{
+    std::int16_t value[RateTable::kSlowest + 1];
+
+    constexpr TrustTable() : value()
+    {
+        for (unsigned n = 0; n <= RateTable::kSlowest; ++n)
+            value[n] = static_cast<std::int16_t>(32767u * n / (n + 1));
+    }
+};
+inline constexpr TrustTable kTrust{};
+
 /// Up to eight numbers of 16 bits. With SSE2 they are one vector; what comes out is the same without.
 struct Lanes
 {
@@ -56,6 +90,14 @@ struct Lanes
     __m128i all = _mm_setzero_si128();
 
     template <unsigned K> void set(std::int16_t value) { all = _mm_insert_epi16(all, value, K); }
+
+    /// Each times the other's / 2^15, rounded down; for numbers below 2^14.
+    Lanes scaled(const Lanes& other) const
+    {
+        Lanes out;
+        out.all = _mm_mulhi_epi16(_mm_add_epi16(all, all), other.all);
+        return out;
+    }
 
     /// At most 2^29 for weights and stretched estimates.
     int times(const Lanes& other) const
@@ -79,6 +121,14 @@ struct Lanes
     std::int16_t all[kCount] = {};
 
     template <unsigned K> void set(std::int16_t value) { all[K] = value; }
+
+    Lanes scaled(const Lanes& other) const
+    {
+        Lanes out;
+        for (unsigned k = 0; k < kCount; ++k)
+            out.all[k] = static_cast<std::int16_t>((2 * all[k] * other.all[k]) >> 16);
+        return out;
+    }
 
     int times(const Lanes& other) const
     {
@@ -105,7 +155,7 @@ template <unsigned Count> struct MixWeights
     static constexpr int kUnitBits = 12;
     /// Weights stay within 8 of 0, whatever is coded.
     static constexpr std::int16_t kMost = 32600;
-    static constexpr std::int16_t kStart = static_cast<std::int16_t>((1 << kUnitBits) * 13 / 10 / Count);
+    static constexpr std::int16_t kStart = static_cast<std::int16_t>((1 << kUnitBits) * 12 / 10 / Count);
 
     Lanes weight;
 
@@ -118,11 +168,13 @@ private:
     }
 };
 
-template <unsigned... K> Lanes stretched(BitModel* const* models, std::integer_sequence<unsigned, K...>)
+template <unsigned... K>
+Lanes trustedEstimates(BitModel* const* models, std::integer_sequence<unsigned, K...>)
 {
-    Lanes lanes;
-    (lanes.set<K>(kStretch.value[models[K]->zero() >> 3]), ...);
-    return lanes;
+    Lanes stretched, trusts;
+    (stretched.set<K>(kStretch.value[unsigned{models[K]->estimate} >> 4]), ...);
+    (trusts.set<K>(kTrust.value[models[K]->seen]), ...);
+    return stretched.scaled(trusts);
 }
 
 /// One bit whose probability is mixed from the models' estimates. Bits are coded as
@@ -130,12 +182,12 @@ template <unsigned... K> Lanes stretched(BitModel* const* models, std::integer_s
 template <unsigned Count, class Coder>
 bool codeMixed(Coder& coder, BitModel* const (&models)[Count], MixWeights<Count>& weights, bool bit)
 {
-    const Lanes estimates = stretched(models, std::make_integer_sequence<unsigned, Count>());
-    const std::uint32_t zero = squash(weights.weight.times(estimates) >> MixWeights<Count>::kUnitBits);
+    const Lanes estimates = trustedEstimates(models, std::make_integer_sequence<unsigned, Count>());
+    const std::uint32_t zero = quickSquash(weights.weight.times(estimates) >> MixWeights<Count>::kUnitBits);
     const bool one = coder.code(zero, bit);
     if (!Coder::kAdapts) return one;
     const int error = (one ? 0 : 1 << kProbabilityBits) - static_cast<int>(zero);
-    weights.weight.move(estimates, static_cast<std::int16_t>(error >> 3), MixWeights<Count>::kMost);
+    weights.weight.move(estimates, static_cast<std::int16_t>(error * 3 >> 4), MixWeights<Count>::kMost);
     for (unsigned k = 0; k < Count; ++k) models[k]->update(one);
     return one;
 }

@@ -55,13 +55,10 @@ void buildSurface(const Frames& frames, const GluedBorder& border,
         for (unsigned c = 0; c < kComponents; ++c) {
             double *coarser = work.coarse[c], *finer = work.surface[c];
             std::memcpy(coarser, finer, std::size_t{m} * m * sizeof *finer);
-            std::memset(finer, 0, count * sizeof *finer);
-            if (c >= frames.components()) continue;
-            for (std::uint32_t j = 0; j < m; ++j)
-                for (std::uint32_t i = 0; i < m; ++i)
-                    finer[2 * j * std::size_t{n} + 2 * i] =
-                        coarser[j * std::size_t{m} + i] * kInverseAreaScale;
-            inverseLifting(finer, n, level.border, work.border);
+            if (c < frames.components())
+                inverseLiftingOfCoarse(coarser, kInverseAreaScale, finer, n, level.border, work.border);
+            else
+                std::memset(finer, 0, count * sizeof *finer);
         }
         const double* planes[kComponents] = {work.surface[0], work.surface[1], work.surface[2]};
         frames.begin(level, planes);
