@@ -86,16 +86,18 @@ Encoder Encoder::withFieldsOf(const Encoder& other) const
     return out;
 }
 
-Outcome<Encoder> Encoder::slid(float step, std::span<const int> octaves, const Retarget& retarget) const
+Outcome<Encoder> Encoder::slid(float step, const Slides& slides, const Retarget& retarget) const
 {
     if (const std::string fault = stepFault(surface_, step, "the step"); !fault.empty())
         return EncodeError{EncodeError::Kind::BadSettings, fault, 0};
     Encoder moved = *this;
-    for (const int octave : octaves) {
+    moved.surface_.prefixCare = slides.prefixCare;
+    for (const int octave : slides.octaves) {
         const float coarser = std::min(std::ldexp(step, octave), kLargestStep);
         const CodedSurface coded = surfaceEncoder_->encode(moved.surface_, parametersOf(coarser), false);
         retarget(coded.decoded, moved.xyz_);
         moved.surface_ = surfaceEncoder_->transform(moved.xyz_);
+        moved.surface_.prefixCare = slides.prefixCare;
         step = std::max(step, smallestStep(moved.surface_));
     }
     return moved;

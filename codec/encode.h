@@ -56,6 +56,16 @@ struct Settings
 /// that it was to come near, 3 grid^2 numbers each. Glued targets must stay equal.
 using Retarget = std::function<void(std::span<const float> decoded, std::span<float> targets)>;
 
+/// How samples are to slide.
+struct Slides
+{
+    std::vector<int> octaves; ///< one a round: how much coarser than the file's its step is; for prefixes
+    /// From then on details along the surface are chosen so that little is missing of them in prefixes
+    /// either: what their lowest one, two and three bits are, in units of those bits squared, counts as much
+    /// as the error of the whole file, times this. Samples slide to where both are small.
+    double prefixCare = 0;
+};
+
 struct EncodedFile
 {
     std::vector<std::uint8_t> bytes;
@@ -94,9 +104,7 @@ public:
     /// The encoder of samples that have slid: once a round the surface is coded at a step and its targets
     /// are moved. What slides along the surface need not be coded, so that a file of the same size comes
     /// nearer.
-    /// @param octaves  how much coarser than `step` each round's is, in octaves: coarser ones are for
-    /// prefixes
-    Outcome<Encoder> slid(float step, std::span<const int> octaves, const Retarget& retarget) const;
+    Outcome<Encoder> slid(float step, const Slides& slides, const Retarget& retarget) const;
 
     /// The best file of at most `target` bytes; at most max(1 %, 24 bytes) smaller.
     /// @param coding  of the geometry, surface or wavelet

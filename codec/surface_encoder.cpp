@@ -114,6 +114,41 @@ private:
     const DetailLevel *level_ = nullptr, *coarser_ = nullptr;
 };
 
+constexpr std::int32_t kLargestDetail = (1 << kDetailBits) - 2;
+
+/// How far a magnitude is from what prefixes make of it that lack its lowest one, two or three bits, in units
+/// of those: the sum of squares.
+double missedByPrefixes(std::int32_t magnitude)
+{
+    double sum = 0;
+    for (int bits = 1; bits <= 3; ++bits) {
+        const std::int32_t known = magnitude >> bits << bits;
+        const double unit = 1 << bits, middle = known == 0 ? 0 : known + 0.5 * (unit - 1);
+        sum += (magnitude - middle) * (magnitude - middle) / (unit * unit);
+    }
+    return sum;
+}
+
+/// thriftyMagnitude() with what prefixes miss counted in, `care` times.
+template <class BitsOf> std::int32_t magnitudeForPrefixes(double size, double care, const BitsOf& bitsOf)
+{
+    constexpr std::int32_t kAround = 6;
+    const auto nearest = static_cast<std::int32_t>(size + 0.5);
+    if (nearest == 0) return 0;
+    const auto cost = [&](std::int32_t magnitude) {
+        const double error = size - magnitude;
+        return error * error + care * missedByPrefixes(magnitude) + kWorthOfBit * bitsOf(magnitude);
+    };
+    std::int32_t best = 0;
+    double bestCost = cost(0);
+    const std::int32_t most = std::min(nearest + kAround - 1, kLargestDetail);
+    for (std::int32_t magnitude = std::max(1, nearest - kAround); magnitude <= most; ++magnitude) {
+        const double candidate = cost(magnitude);
+        if (candidate < bestCost) bestCost = candidate, best = magnitude;
+    }
+    return best;
+}
+
 struct BitLearner
 {
     bool bit(BitModel& model, bool one) const { return model.update(one), one; }
@@ -133,6 +168,9 @@ public:
     {
         if (level.index + surface_.smoothLevels >= surface_.levels.size()) return false;
         exact_ = &surface_.levels[level.index];
+        // The finest levels' details along the surface are small, and nothing lies on them.
+        const bool isFine = level.index + surface_.smoothLevels + 2 >= surface_.levels.size();
+        care_ = isFine ? surface_.prefixCare / 4 : surface_.prefixCare;
         here_ = &levels_.level[level.index];
         cost_.begin(*here_, level.index == 0 ? nullptr : &levels_.level[level.index - 1]);
         const std::uint32_t n = level.size;
@@ -177,11 +215,14 @@ public:
             const double exact = exactIn(frame, c, j * std::size_t{n} + i);
             const double size = std::min(std::abs(exact), static_cast<double>(kLargestDetail));
             const unsigned place = cost_.classOf(orientation, i, j, here, c);
-            const std::int32_t magnitude = thriftyMagnitude(size, kWorthOfBit, [&](std::int32_t candidate) {
+            const auto bitsOf = [&](std::int32_t candidate) {
                 BitCounter counter;
                 cost_.code(counter, place, c, static_cast<std::uint32_t>(candidate));
                 return counter.bits();
-            });
+            };
+            const double care = c == 0 ? 0 : care_;
+            const std::int32_t magnitude = care > 0 ? magnitudeForPrefixes(size, care, bitsOf)
+                                                    : thriftyMagnitude(size, kWorthOfBit, bitsOf);
             BitLearner learner;
             cost_.code(learner, place, c, static_cast<std::uint32_t>(magnitude));
             if (magnitude == 0) continue;
@@ -198,8 +239,6 @@ public:
     }
 
 private:
-    static constexpr std::int32_t kLargestDetail = (1 << kDetailBits) - 2;
-
     bool isWorth(std::uint32_t bi, std::uint32_t bj, unsigned direction) const
     {
         return worth_[2 * (bj * std::size_t{side_} + bi) + direction] > 0;
@@ -217,6 +256,7 @@ private:
     DetailLevels& levels_;
     std::vector<double> worth_; // of the level's blocks
     std::uint32_t side_ = 0;
+    double care_ = 0; // of the level
     const TransformedSurface::Level* exact_ = nullptr;
     DetailLevel* here_ = nullptr;
     DetailCost cost_;

@@ -21,6 +21,7 @@ struct TransformedSurface
     };
     std::uint32_t grid = 0;
     unsigned smoothLevels = 0; ///< of the levels so many of the finest are not to be coded
+    double prefixCare = 0;     ///< see Slides
     std::vector<Level> levels; ///< the coarsest first
     double coarse[kComponents][kCoarsest * kCoarsest] = {};
     double largest = 0;  ///< magnitude of any coefficient

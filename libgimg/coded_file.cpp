@@ -2,7 +2,6 @@
 
 #include "gimg/decode.h"
 
-#include <numeric>
 #include <optional>
 #include <span>
 
@@ -34,12 +33,6 @@ Result<std::optional<SurfaceDistance>> distanceOf(std::span<const std::uint8_t> 
 
 } // namespace
 
-double CodedFile::worth() const
-{
-    return std::accumulate(prefixPsnr.begin(), prefixPsnr.end(), psnr) /
-           static_cast<double>(1 + prefixPsnr.size());
-}
-
 Result<CodedFile> judged(Result<codec::EncodedFile> encoded, const SurfaceMeasure& measure)
 {
     if (!encoded) return encoded.error();
@@ -54,16 +47,16 @@ Result<CodedFile> judged(Result<codec::EncodedFile> encoded, const SurfaceMeasur
     return coded;
 }
 
-Status judgePrefixes(CodedFile& file, const SurfaceMeasure& measure)
+Result<PrefixPsnr> prefixPsnrOf(const CodedFile& file, const SurfaceMeasure& measure)
 {
-    file.prefixPsnr.clear();
-    for (const std::size_t part : {2, 4}) {
-        const std::span<const std::uint8_t> prefix(file.bytes.data(), file.bytes.size() / part);
+    PrefixPsnr psnr = {file.psnr};
+    for (const std::size_t k : {1, 2}) {
+        const std::span<const std::uint8_t> prefix(file.bytes.data(), file.bytes.size() >> k);
         const Result<std::optional<SurfaceDistance>> distance = distanceOf(prefix, GIM_PREFIX, measure);
         if (!distance && distance.error().kind != ErrorKind::FileTruncated) return distance.error();
-        file.prefixPsnr.push_back(distance && *distance ? (*distance)->psnr() : 0);
+        psnr[k] = distance && *distance ? (*distance)->psnr() : 0;
     }
-    return Done{};
+    return psnr;
 }
 
 codec::Source sourceOf(const GridSeam& seam, const FloatImage& geometry, const FloatImage& normals,

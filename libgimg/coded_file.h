@@ -7,6 +7,7 @@
 #include "gimg/image_io.h"
 #include "gimg/result.h"
 
+#include <array>
 #include <cstdint>
 #include <utility>
 #include <variant>
@@ -21,11 +22,10 @@ struct CodedFile
     float step = 0;      ///< of the geometry
     double psnr = 0;     ///< of the decoded finest level; 0 where hardly any surface is left
     double maxError = 1; ///< SurfaceDistance::hausdorff() of it, as a fraction of the diagonal; then 1
-    std::vector<double> prefixPsnr; ///< of half the bytes, a quarter; empty: not asked for
-
-    /// What files of one size are compared by: the mean PSNR of the file and its prefixes.
-    double worth() const;
 };
+
+/// PSNR of a file, of half of its bytes and of a quarter.
+using PrefixPsnr = std::array<double, 3>;
 
 Error fromCodec(const codec::EncodeError& error);
 
@@ -38,8 +38,8 @@ template <class T> Result<T> resultOf(codec::Outcome<T> outcome)
 /// Decodes a file and measures its finest level.
 Result<CodedFile> judged(Result<codec::EncodedFile> encoded, const SurfaceMeasure& measure);
 
-/// Measures what a decoder makes of half the file and of a quarter.
-Status judgePrefixes(CodedFile& file, const SurfaceMeasure& measure);
+/// Measures what a decoder makes of the parts of a file.
+Result<PrefixPsnr> prefixPsnrOf(const CodedFile& file, const SurfaceMeasure& measure);
 
 /// The parts of a source, which must live as long as it is used.
 /// @param normals  empty for none

@@ -24,6 +24,9 @@ std::vector<int> downOnce(int rounds, int deepest)
 
 } // namespace
 
+// What sliding for prefixes takes from the whole file, refits give back.
+constexpr int kRefitsForPrefixes = 2;
+
 Effort Effort::of(const EncodeOptions& options)
 {
     struct Row
@@ -43,13 +46,18 @@ Effort Effort::of(const EncodeOptions& options)
         {3, 10, 7, 0},    // 9
     };
     const Row& row = kEfforts[options.effort - 1];
-    Effort effort{row.fitRounds, {}, row.refits, row.gridWorth, options.progressive};
+    Effort effort{row.fitRounds, {}, row.refits, row.gridWorth, {}};
     if (row.slides == 0) return effort;
-    if (options.progressive)
-        effort.slides = {inTurn(row.slides + 3, 2), inTurn(row.slides + 2, 1), inTurn(row.slides + 5, 3),
-                         downOnce(row.slides + 4, 3)};
-    else
-        effort.slides = {inTurn(row.slides, 0)};
+    effort.slides = {{inTurn(row.slides, 0)}};
+    if (!options.progressive) return effort;
+    // Which care is best depends on the surface.
+    const std::vector<double> cares = row.refits > 0 ? std::vector{0.0, 4.0, 6.0} : std::vector{4.0};
+    for (const double care : cares)
+        effort.slidesForPrefixes.push_back({{inTurn(row.slides + 3, 2), care},
+                                            {inTurn(row.slides + 2, 1), care},
+                                            {inTurn(row.slides + 5, 3), care},
+                                            {downOnce(row.slides + 4, 3), care}});
+    if (effort.refits > 0) effort.refits += kRefitsForPrefixes;
     return effort;
 }
 

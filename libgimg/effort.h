@@ -1,5 +1,6 @@
 #pragma once
 
+#include "codec/encode.h"
 #include "gimg/encode.h"
 
 #include <vector>
@@ -9,13 +10,12 @@ namespace gimg {
 /// What EncodeOptions::effort and progressive stand for.
 struct Effort
 {
-    int fitRounds; ///< see FitOptions
-    /// Ways to slide, of which the best is taken: octaves by which the steps of the rounds are coarser, see
-    /// codec::Encoder::slid. Empty: samples stay where they are.
-    std::vector<std::vector<int>> slides;
-    int refits;       ///< how often the decoded surface is fitted and slides anew
+    int fitRounds;                     ///< see FitOptions
+    std::vector<codec::Slides> slides; ///< ways to slide, of which the best is taken; none: samples stay
+    int refits;                        ///< how often the decoded surface is fitted and slides anew
     double gridWorth; ///< dB by which a finer grid has to be better, where the grid is left open
-    bool prefixes;    ///< files are compared by their prefixes, too
+    /// Ways to slide where prefixes count too, in sets that are tried each on its own; none: they do not.
+    std::vector<std::vector<codec::Slides>> slidesForPrefixes;
 
     static Effort of(const EncodeOptions& options);
 };

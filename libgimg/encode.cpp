@@ -6,6 +6,7 @@
 #include "gimg/stretch.h"
 #include "gimg/unfold.h"
 #include "prepared.h"
+#include "sliding_coder.h"
 #include "stopwatch.h"
 
 #include <tbb/parallel_for.h>
@@ -76,12 +77,6 @@ std::string objectionToError(const CodedFile& coded, const EncodeGoal& goal)
 bool isSearched(EncodeTarget target)
 {
     return target == EncodeTarget::Psnr || target == EncodeTarget::MaxError;
-}
-
-bool isBetter(const CodedFile& file, const CodedFile& than, EncodeTarget target)
-{
-    return target == EncodeTarget::Bytes ? file.worth() > than.worth()
-                                         : file.bytes.size() < than.bytes.size();
 }
 
 constexpr int kSmallestGrid = 129, kLargestGrid = 513; // that are chosen where the grid is left open
@@ -300,14 +295,16 @@ Result<EncodedMesh> MeshEncoder::encode(const EncodeGoal& goal) const
 Result<EncodedMesh> MeshEncoder::encodeAtBestGrid(const EncodeGoal& goal) const
 {
     int grid = std::max(kSmallestGrid, prepared_->report.lowest);
-    Result<EncodedMesh> best = encodeAt(grid, goal, true, 0);
+    Result<EncodedMesh> best = encodeAt(grid, goal, true, true);
     while (grid < kLargestGrid) {
         grid = 2 * grid - 1;
-        Result<EncodedMesh> finer = encodeAt(grid, goal, true, 0);
+        Result<EncodedMesh> finer = encodeAt(grid, goal, true, true);
         if (best && (!finer || finer->psnr < best->psnr + prepared_->effort.gridWorth)) break;
         best = std::move(finer);
     }
-    return best && prepared_->effort.refits > 0 ? encodeAt(best->grid, goal, true) : std::move(best);
+    const Effort& effort = prepared_->effort;
+    const bool isMore = effort.refits > 0 || !effort.slidesForPrefixes.empty();
+    return best && isMore ? encodeAt(best->grid, goal, true) : std::move(best);
 }
 
 // Near the most that a grid can hold, decibels are bought dearly: the quantisation has to make up for the
@@ -342,107 +339,24 @@ Result<EncodedMesh> MeshEncoder::encodeAtAmpleGrid(const EncodeGoal& goal) const
     return encoded;
 }
 
-Result<CodedFile> MeshEncoder::Prepared::codeFor(const EncodeGoal& goal, Precision precision,
-                                                 const codec::Encoder& encoder,
-                                                 const EncodeProgress& told) const
-{
-    Result<CodedFile> coded = gimg::codeFor(goal, precision, encoder, measure, told);
-    if (coded && effort.prefixes && goal.target == EncodeTarget::Bytes)
-        if (const Status judgedToo = judgePrefixes(*coded, measure); !judgedToo) return judgedToo.error();
-    return coded;
-}
-
-// Codes the samples as they have slid. None where they cannot be coded for the goal: that is no loss.
-Result<std::optional<CodedFile>> MeshEncoder::Prepared::codeSlid(const GridEncoders::Slide& slide,
-                                                                 const EncodeGoal& goal,
-                                                                 const EncodeProgress& told) const
-{
-    Result<CodedFile> slid = codeFor(goal, Precision::File, slide.finished(), told);
-    return slid ? std::optional(std::move(*slid)) : std::nullopt;
-}
-
-// Slides in all ways that the effort knows, side by side, and keeps the best. Qualities have no prefixes to
-// compare: they take the first way.
-Result<std::optional<CodedFile>> MeshEncoder::Prepared::codeSlides(GridEncoders::Slide& slide, float step,
-                                                                   const EncodeGoal& goal) const
-{
-    const size_t ways = goal.target == EncodeTarget::Bytes ? effort.slides.size() : 1;
-    std::vector<GridEncoders::Slide> slides(ways, slide);
-    std::vector<Result<std::optional<CodedFile>>> coded(ways, std::optional<CodedFile>());
-    tbb::parallel_for(size_t{0}, ways, [&](size_t way) {
-        if (const Status moved = slides[way].move(step, effort.slides[way]); !moved)
-            coded[way] = moved.error();
-        else
-            coded[way] = codeSlid(slides[way], goal, way == 0 ? progress : EncodeProgress());
-    });
-    size_t best = 0;
-    for (size_t way = 0; way < ways; ++way) {
-        if (!coded[way]) return coded[way].error();
-        if (*coded[way] && (!*coded[best] || isBetter(**coded[way], **coded[best], goal.target))) best = way;
-    }
-    slide = std::move(slides[best]);
-    return std::move(coded[best]);
-}
-
-// The samples slide for the step that reaches the goal without. For a quality that step need not be exact,
-// and nor need the file, if it turns out to be much larger.
-Result<CodedFile> MeshEncoder::Prepared::codeOnceSlid(const codec::Encoder& still, GridEncoders::Slide& slide,
-                                                      const EncodeGoal& goal) const
-{
-    constexpr double kMuchLarger = 1.05;
-    const bool exact = goal.target == EncodeTarget::Bytes;
-    Result<CodedFile> unslid = codeFor(goal, exact ? Precision::File : Precision::Step, still, progress);
-    if (!unslid) return unslid;
-    Result<std::optional<CodedFile>> slid = codeSlides(slide, stepToMeet(goal, *unslid), goal);
-    if (!slid) return slid.error();
-    if (!exact) {
-        const auto size = static_cast<double>(unslid->bytes.size());
-        if (*slid && static_cast<double>((*slid)->bytes.size()) * kMuchLarger < size)
-            return std::move(**slid);
-        unslid = codeFor(goal, Precision::File, still, progress);
-        if (!unslid) return *slid ? Result<CodedFile>(std::move(**slid)) : unslid;
-    }
-    return *slid && isBetter(**slid, *unslid, goal.target) ? std::move(**slid) : std::move(*unslid);
-}
-
-// What the decoder makes of the best file is where the next round begins.
-Result<CodedFile> MeshEncoder::Prepared::codeSliding(const GridEncoders::Sampled& sampled,
-                                                     const EncodeGoal& goal, int refits) const
-{
-    if (goal.coding != LossyCoding::Surface || effort.slides.empty())
-        return codeFor(goal, Precision::File, sampled.encoder, progress);
-    Result<GridEncoders::Slide> slide = encoders->slide(sampled);
-    if (!slide) return slide.error();
-    Result<CodedFile> best = codeOnceSlid(sampled.encoder, *slide, goal);
-    if (!best) return best;
-    for (int round = 0; round < refits && slide->mayRefit(); ++round) {
-        const Result<DecodedImages> images = decodeImages(best->bytes);
-        if (!images) return images.error();
-        if (const Status fitted = slide->refit(images->geometry); !fitted) return fitted.error();
-        const GridEncoders::Slide refitted = *slide; // sharp edges fare better without sliding
-        std::optional<Result<std::optional<CodedFile>>> coded[2];
-        tbb::parallel_invoke([&] { coded[0] = codeSlid(refitted, goal, {}); },
-                             [&] { coded[1] = codeSlides(*slide, best->step, goal); });
-        for (auto& made : coded) {
-            if (!*made) return made->error();
-            if (**made && isBetter(***made, *best, goal.target)) best = std::move(***made);
-        }
-    }
-    return best;
-}
-
 Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal, bool lossy) const
 {
-    return encodeAt(grid, goal, lossy, prepared_->effort.refits);
+    return encodeAt(grid, goal, lossy, false);
 }
 
-Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal, bool lossy, int refits) const
+Result<EncodedMesh> MeshEncoder::encodeAt(int grid, const EncodeGoal& goal, bool lossy, bool isTrial) const
 {
+    Effort effort = prepared_->effort;
+    if (isTrial) {
+        effort.refits = 0;
+        effort.slidesForPrefixes.clear();
+    }
     Stopwatch watch;
     const auto sampled = prepared_->encoders->at(grid, lossy, prepared_->measure);
     if (!sampled) return sampled.error();
     watch.lap();
-    Result<CodedFile> coded = lossy ? prepared_->codeSliding(**sampled, goal, refits)
+    Result<CodedFile> coded = lossy ? codeSliding(effort, *prepared_->encoders, **sampled, prepared_->measure,
+                                                  goal, prepared_->progress)
                                     : codeRaw(goal.target, (*sampled)->encoder, prepared_->measure);
     if (!coded) return coded.error();
     if (prepared_->encoders->hasFields()) {

@@ -109,10 +109,10 @@ Result<GridEncoders::Slide> GridEncoders::slide(const Sampled& sampled)
     return Slide(*this, sampled, std::move(*slide));
 }
 
-Status GridEncoders::Slide::move(float step, std::span<const int> octaves)
+Status GridEncoders::Slide::move(float step, const codec::Slides& slides)
 {
     Result<codec::Encoder> moved = resultOf(
-        encoder_.slid(step, octaves, [this](std::span<const float> decoded, std::span<float> targets) {
+        encoder_.slid(step, slides, [this](std::span<const float> decoded, std::span<float> targets) {
             slide_(decoded, targets);
         }));
     if (!moved) return moved.error();

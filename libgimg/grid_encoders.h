@@ -54,8 +54,7 @@ public:
     {
     public:
         /// Codes at this step, or coarser ones, and moves the targets, as often as told.
-        /// @param octaves  see codec::Encoder::slid
-        Status move(float step, std::span<const int> octaves);
+        Status move(float step, const codec::Slides& slides);
 
         /// Fits the surface of a decoded image anew, and takes its samples: where samples have slid to they
         /// want another height above the mesh.

@@ -22,18 +22,6 @@ struct MeshEncoder::Prepared
     SurfaceMeasure measure;
     EncodeProgress progress;
     int threads;
-
-    /// gimg::codeFor, with prefixes judged where files are compared by them.
-    Result<CodedFile> codeFor(const EncodeGoal& goal, Precision precision, const codec::Encoder& encoder,
-                              const EncodeProgress& told) const;
-    Result<CodedFile> codeSliding(const GridEncoders::Sampled& sampled, const EncodeGoal& goal,
-                                  int refits) const;
-    Result<CodedFile> codeOnceSlid(const codec::Encoder& still, GridEncoders::Slide& slide,
-                                   const EncodeGoal& goal) const;
-    Result<std::optional<CodedFile>> codeSlides(GridEncoders::Slide& slide, float step,
-                                                const EncodeGoal& goal) const;
-    Result<std::optional<CodedFile>> codeSlid(const GridEncoders::Slide& slide, const EncodeGoal& goal,
-                                              const EncodeProgress& told) const;
 };
 
 /// As many threads as asked for while it lives.

@@ -15,11 +15,15 @@ inline EncodedMesh encode(const Mesh& mesh, const EncodeOptions& options)
     return encoded ? std::move(*encoded) : EncodedMesh{};
 }
 
+/// Samples slide, but are not fitted again: what is tested is seldom how good they become.
+constexpr int kQuickEffort = 4;
+
 inline EncodeOptions forBytes(size_t bytes, int grid = 0)
 {
     EncodeOptions options;
     options.bytes = bytes;
     options.grid = grid;
+    options.effort = kQuickEffort;
     return options;
 }
 
@@ -28,6 +32,7 @@ inline EncodeOptions forTarget(EncodeTarget target, int grid)
     EncodeOptions options;
     options.target = target;
     options.grid = grid;
+    options.effort = kQuickEffort;
     return options;
 }
 

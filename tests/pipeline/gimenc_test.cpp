@@ -33,7 +33,12 @@ protected:
         const int status = std::system(command.c_str());
         return {WEXITSTATUS(status), read(path("out")), read(path("err"))};
     }
-    Ended gimenc(const std::string& arguments) { return run(GIMENC_PATH, arguments); }
+    /// Quick, unless told otherwise.
+    Ended gimenc(const std::string& arguments)
+    {
+        const bool isTold = arguments.find("--effort") != std::string::npos;
+        return run(GIMENC_PATH, (isTold ? "" : "--effort 4 ") + arguments);
+    }
     std::string mesh(const std::string& name, const Mesh& mesh)
     {
         EXPECT_TRUE(writeMesh(mesh, path(name)).ok());

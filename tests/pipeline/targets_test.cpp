@@ -104,6 +104,31 @@ TEST(EncodeEffort, BuysDecibels)
     }
 }
 
+// PSNR of the first bytes of a file.
+double prefixPsnr(const EncodedMesh& encoded, size_t bytes, const Mesh& reference)
+{
+    const std::span<const uint8_t> prefix(encoded.file.data(), bytes);
+    const Result<DecodedImages> images = decodeImages(prefix, GIM_PREFIX);
+    EXPECT_TRUE(images.ok());
+    const Result<Mesh> mesh = levelMesh(prefix, *images, 0, GIM_PREFIX);
+    EXPECT_TRUE(mesh.ok());
+    return test::psnrOf(reference, *mesh);
+}
+
+TEST(EncodeProgressive, PrefixesAreWorthMore)
+{
+    const Mesh mesh = shapes::wavySphere(1, 0.3, 5, 24);
+    EncodeOptions options = forBytes(2000, 65);
+    options.effort = 6;
+    const EncodedMesh plain = encode(mesh, options);
+    options.progressive = true;
+    const EncodedMesh progressive = encode(mesh, options);
+    EXPECT_GT(progressive.psnr, plain.psnr - 1);
+    for (size_t bytes : {500, 1000})
+        EXPECT_GT(prefixPsnr(progressive, bytes, mesh), prefixPsnr(plain, bytes, mesh) + 0.8) << bytes;
+    EXPECT_GT(prefixPsnr(progressive, 1000, mesh), encode(mesh, forBytes(1000, 65)).psnr - 1);
+}
+
 TEST(EncodePsnr, ATargetAboveTheGridSaysWhatItHolds)
 {
     EncodeOptions options = forTarget(EncodeTarget::Psnr, 33);

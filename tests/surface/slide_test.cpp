@@ -45,7 +45,7 @@ struct Slid
         const auto surface = std::make_shared<const SlideSurface>(std::move(*SlideSurface::of(mesh)));
         const GridSeam gridSeam{static_cast<int>(seam.lowest), static_cast<int>(seam.start), seam.sides};
         SampleSlide slide = *SampleSlide::of(surface, gridSeam, image);
-        end = std::get<codec::Encoder>(start.slid(step, std::vector<int>(8, 0), slide));
+        end = std::get<codec::Encoder>(start.slid(step, {std::vector<int>(8, 0)}, slide));
     }
 
     static codec::Encoder encoderOf(const FloatImage& image, const codec::Seam& seam)
