@@ -22,7 +22,7 @@ TEST_P(EveryLevel, HasTheTopologyOfTheInput)
     EncodeOptions options;
     options.bytes = 4000;
     options.grid = genus < 7 ? 129 : 257;
-    options.effort = 4; // refits move samples as slides do, and take longer
+    options.effort = 3; // refits move samples as slides do, and take longer
     const Result<EncodedMesh> encoded = encodeMesh(mesh, options);
     ASSERT_TRUE(encoded.ok()) << encoded.error().message;
     EXPECT_EQ(encoded->topology.genus, genus);

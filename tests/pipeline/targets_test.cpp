@@ -143,7 +143,7 @@ TEST(EncodeGrid, LeftOpenGrowsWithTheGoal)
 {
     const Mesh mesh = shapes::wavySphere(1, 0.3, 5, 16);
     EncodeOptions options = forBytes(12000, 129);
-    options.effort = 6;
+    options.effort = 2;
     const double at129 = encode(mesh, options).psnr;
     options.grid = 0;
     const Result<MeshEncoder> encoder = MeshEncoder::prepare(mesh, options);
