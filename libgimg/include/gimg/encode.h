@@ -92,9 +92,9 @@ struct EncodeOptions : EncodeGoal
     int smoothLevels = 0;
     int effort = 7; ///< 1 to 9: time for quality, see docs/effort.md
     /// Files are chosen by what half and a quarter of them are worth, too, and samples slide for those:
-    /// prefixes come within about a decibel of files made for their bytes, and so does the whole (docs/codec.md). For
-    /// numbers of bytes; takes ten times as long, with an effort of 6 or less three times.
-    /// Any file of the surface coding can be cut short.
+    /// prefixes come within about a decibel of files made for their bytes, and so does the whole
+    /// (docs/codec.md). For numbers of bytes; takes ten times as long, with an effort of 6 or less three
+    /// times. Any file of the surface coding can be cut short.
     bool progressive = false;
     /// What PSNR and errors are against, while the encoder is prepared; null: the mesh itself.
     const Mesh* reference = nullptr;
