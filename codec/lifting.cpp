@@ -49,7 +49,8 @@ void inverseLiftingOfCoarse(const double* coarse, double factor, double* image, 
     }
     for (std::uint32_t j = 1; j < size; j += 2) {
         double* line = image + j * pitch;
-        for (std::uint32_t i = 0; i < size; ++i) line[i] = 0.0 - kGamma * (line[i - pitch] + line[i + pitch]);
+        const double *above = line - pitch, *below = line + pitch;
+        for (std::uint32_t i = 0; i < size; ++i) line[i] = 0.0 - kGamma * (above[i] + below[i]);
     }
     for (std::uint32_t j = 0; j < size; ++j) liftOdd(image + j * pitch, size, -kGamma);
     step(image, size, 0, -kBeta);

@@ -20,12 +20,14 @@ constexpr std::int32_t kLogistic[33] = {11,    18,    30,    49,    81,    133, 
                                         23955, 26790, 28862, 30282, 31214, 31807, 32179, 32408, 32549,
                                         32635, 32687, 32719, 32738, 32750, 32757};
 
+constexpr int clampStretched(int value)
+{
+    return value > kStretchLimit ? kStretchLimit : value < -kStretchLimit ? -kStretchLimit : value;
+}
+
 constexpr std::uint32_t squash(int stretched)
 {
-    const int clamped = stretched > kStretchLimit    ? kStretchLimit
-                        : stretched < -kStretchLimit ? -kStretchLimit
-                                                     : stretched;
-    const int offset = clamped + kStretchLimit + 1;
+    const int offset = clampStretched(stretched) + kStretchLimit + 1;
     const int cell = offset >> 7, within = offset & 127;
     return static_cast<std::uint32_t>(
         (kLogistic[cell] * (128 - within) + kLogistic[cell + 1] * within + 64) >> 7);
@@ -46,10 +48,7 @@ inline constexpr SquashTable kSquash{};
 
 inline std::uint32_t quickSquash(int stretched)
 {
-    const int clamped = stretched > kStretchLimit    ? kStretchLimit
-                        : stretched < -kStretchLimit ? -kStretchLimit
-                                                     : stretched;
-    return kSquash.value[clamped + kStretchLimit];
+    return kSquash.value[clampStretched(stretched) + kStretchLimit];
 }
 
 /// stretch() of the middles of 4096 equal intervals of probability: the least number whose squash()

@@ -22,10 +22,10 @@ std::vector<int> downOnce(int rounds, int deepest)
     return octaves;
 }
 
-} // namespace
-
 // What sliding for prefixes takes from the whole file, refits give back.
 constexpr int kRefitsForPrefixes = 2;
+
+} // namespace
 
 Effort Effort::of(const EncodeOptions& options)
 {

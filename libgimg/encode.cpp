@@ -6,16 +6,13 @@
 #include "gimg/stretch.h"
 #include "gimg/unfold.h"
 #include "prepared.h"
+#include "rate_search.h"
 #include "sliding_coder.h"
 #include "stopwatch.h"
-
-#include <tbb/parallel_for.h>
-#include <tbb/parallel_invoke.h>
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
-#include <mutex>
 #include <string_view>
 
 namespace gimg {

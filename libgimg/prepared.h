@@ -2,7 +2,6 @@
 
 #include "effort.h"
 #include "grid_encoders.h"
-#include "rate_search.h"
 
 #include "gimg/encode.h"
 

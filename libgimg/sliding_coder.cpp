@@ -87,12 +87,11 @@ Result<std::optional<SlidingCoder::Candidate>> SlidingCoder::codeSlid(const Grid
     return slid ? std::optional(std::move(*slid)) : std::nullopt;
 }
 
-// Slides in all ways, side by side, and keeps the best. Qualities have no prefixes to compare: they take the
-// first way.
+// Slides in all ways, side by side, and keeps the best.
 Result<std::optional<SlidingCoder::Candidate>> SlidingCoder::codeSlides(GridEncoders::Slide& slide,
                                                                         float step) const
 {
-    const size_t ways = goal_.target == EncodeTarget::Bytes ? ways_.size() : 1;
+    const size_t ways = ways_.size();
     std::vector<GridEncoders::Slide> slides(ways, slide);
     std::vector<Result<std::optional<Candidate>>> coded(ways, std::optional<Candidate>());
     tbb::parallel_for(size_t{0}, ways, [&](size_t way) {
